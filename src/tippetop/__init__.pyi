@@ -49,6 +49,7 @@ from .problem.implausible import Implausible as Implausible
 from .problem.launch import Launch as Launch
 from .problem.problem import Problem as Problem
 from .problem.shapes import EccentricSphere as EccentricSphere
+from .problem.shapes import Meridian as Meridian
 from .problem.shapes import Oval as Oval
 from .problem.shapes import Ring as Ring
 from .problem.shapes import Shape as Shape

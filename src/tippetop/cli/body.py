@@ -271,7 +271,10 @@ def _prospects(workpiece: "tt.Workpiece") -> dict[str, Any]:
     mass, _, I1, I3 = workpiece.mass_properties
     outlook = None
     with suppress(InvalidInput):
-        shapes = touching_surfaces(workpiece, completed=True)
+        try:
+            shapes = touching_surfaces(workpiece)
+        except InvalidInput:
+            shapes = touching_surfaces(workpiece, completed=True)
         outlook = prospects(tt.Body(mass=mass, shape=shapes[0], I1=I1, I3=I3), shapes)
     if outlook is None:
         sphere = (
@@ -397,9 +400,11 @@ def _rows(summary: dict[str, Any]) -> list[tuple[str, str, str]]:
         ]
     if summary["touch"]:
         spin = spelled(summary["touch"]["least_launch_spin"], 7)
+        number = summary["touch"]["surface"]
+        lower = f"surface {number}" if number else "the edge of the cut ball"
         rows.append(
             (
-                f"surface {summary['touch']['surface']} comes down to the table, launched above",
+                f"{lower} comes down to the table, launched above",
                 spin,
                 "rad/s",
             )

@@ -5,7 +5,8 @@ from typing import Any
 
 from tippetop.graph.graph import LESS, SELECT, SIZE, NotRecordable
 from tippetop.graph.recording import record
-from tippetop.mechanics.surfaces.hull import each_surface
+from tippetop.mechanics.surfaces.hull import acting, each_surface
+from tippetop.mechanics.surfaces.surface import MeridianSurface
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar
 from tippetop.support.errors import Described, InvalidInput
@@ -30,14 +31,16 @@ def require_recordable(top: Top) -> None:
 
 
 def has_choices(top: Top) -> bool:
-    """Return whether a user's law or surface chooses by the numbers, as `tippetop.extend.where`
-    does.
+    """Return whether a surface of arcs, or a user's law or surface, chooses by the numbers, as
+    `tippetop.extend.where` does.
 
     Raises `InvalidInput` if it asks of its arguments what only numbers have.
     """
-    parts = (top.friction, *each_surface(top.surface))
+    surfaces = each_surface(top.surface)
+    parts: tuple[Any, ...] = (top.friction, *surfaces)
+    chooses = any(isinstance(surface, MeridianSurface) for surface in map(acting, surfaces))
     user_parts = [part for part in parts if type(part).__module__.partition(".")[0] != PACKAGE]
-    return bool(user_parts) and _of_kind(top.kind)
+    return chooses or (bool(user_parts) and _of_kind(top.kind))
 
 
 @lru_cache

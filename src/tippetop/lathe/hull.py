@@ -10,6 +10,7 @@ surface with the largest support function.
 
 import cmath
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -92,6 +93,19 @@ class ConvexHull(NamedTuple):
             ]
             distances += [(zone.support(tilt) - second.support(tilt), tilt) for tilt in tilts]
         return max(distances)
+
+    def rows(self, zones: Sequence[Zone]) -> list[list[Zone]]:
+        """Return surfaces in rows that continue each other: the contact point passes from one to
+        the next without a jump.
+        """
+        rows: list[list[Zone]] = []
+        for zone in zones:
+            continues = bool(rows) and rows[-1][-1].high == zone.low
+            if continues and zone.low not in self.flats:
+                rows[-1].append(zone)
+            else:
+                rows.append([zone])
+        return rows
 
     def smooth_parts(self, reach: float) -> list[tuple[float, float]]:
         """Return the ranges of tilts in which the body stands on a smooth curve that is no circle.

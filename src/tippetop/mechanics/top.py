@@ -8,7 +8,7 @@ from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.laws.friction import FrictionLaw, Traction
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull, lowest_number
-from tippetop.mechanics.surfaces.surface import Surface
+from tippetop.mechanics.surfaces.surface import Surface, kind_of
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, scale
 
@@ -186,7 +186,7 @@ class Top(NamedTuple):
         law, surface = self.body.friction, self.body.surface
         coefficients = len(law.coefficients(NATURAL))
         return Kind(
-            kind_of_surface(surface),
+            kind_of(surface),
             type(law),
             len(surface.proportions),
             coefficients,
@@ -267,11 +267,6 @@ class Kind(NamedTuple):
         # A law with branches is a row of its numbers, with which those of each branch begin.
         law: Any = body.friction
         return Top(body, self.number, self.branch_law(*law, *branch_numbers))
-
-
-def kind_of_surface(surface: Surface) -> Any:
-    """Return what makes such surfaces of their proportions."""
-    return getattr(surface, "make", type(surface))
 
 
 # Several contacts of one body: its numbers come once, and then those of each branch.

@@ -64,6 +64,17 @@ def power(base: Scalar, exponent: float) -> Scalar:
     return nan if isinstance(base, (int, float)) and base < 0.0 else base**exponent
 
 
+def either(condition: Scalar, first: Scalar, second: Scalar) -> Scalar:
+    """Return the first number where a condition holds, else the second: of floats, arrays and
+    expressions.
+    """
+    if hasattr(condition, "graph"):
+        return condition.graph.select(condition, first, second)
+    if hasattr(condition, "choose"):
+        return (1 * condition).choose((second, first))
+    return first if condition else second
+
+
 def whole_power(base: Scalar, exponent: float) -> Scalar:
     """Return a power by products, exponent 0, 1, 2, ...: analytic where the base is zero, too."""
     if exponent == 0.0:

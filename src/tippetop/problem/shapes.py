@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from tippetop.mechanics.laws.face_friction import LEAST_WIDTH
 from tippetop.mechanics.surfaces.surface import (
+    MeridianSurface,
     OvalSurface,
     PointSurface,
     RingSurface,
@@ -156,6 +157,90 @@ class Ring(Shape):
     def surface(self) -> Surface:
         """Surface about the centre of mass, in the form that the mechanics uses."""
         return RingSurface(self.radius, self.center, self.tube, self.inner_radius)
+
+
+LengthsOfArcs = Annotated[
+    tuple[NotNegative, ...], Field(min_length=2, max_length=8), Quantity("m", "radii of the arcs")
+]
+TiltsOfArcs = Annotated[
+    tuple[Number, ...],
+    Field(min_length=1, max_length=7),
+    Quantity("rad", "tilts at which one arc follows another"),
+]
+
+ON_AXIS = 1e-12
+"""Distance of an arc's centre from the axis up to which it is on it, in sizes: rounding."""
+
+
+class Meridian(Shape):
+    """Convex surface whose meridian is arcs that continue each other: a ball that is cut off.
+
+    From tilt 0 on the body stands on each arc up to a tilt, from which on it stands on the next
+    one. An arc of radius 0 is a sharp edge, such as that of a cut.
+
+    Attributes
+    ----------
+    tubes
+        Radii of the arcs, m.
+    tilts
+        Tilts at which each arc ends and the next begins, rad, increasing; one less than arcs.
+    center
+        Height of the first arc's centre above the centre of mass, along the axis, m.
+    radius
+        Distance of the first arc's centre from the axis, m; 0 for a sphere.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> from math import acos
+    >>> cut = tt.Meridian(tubes=[0.02, 0.0], tilts=[acos(-0.4)], center=0.004)  # 8 mm above the centre
+    >>> ball = tt.Sphere(radius=0.02, center=0.004)
+    >>> cut.surface.height(-0.3) == ball.surface.height(-0.3)
+    True
+    >>> cut.surface.height(-0.9) < ball.surface.height(-0.9)
+    True
+    """
+
+    kind: Literal["meridian"] = "meridian"
+    tubes: LengthsOfArcs
+    tilts: TiltsOfArcs
+    center: Center
+    radius: Annotated[Number, Quantity("m", "distance of the first arc's centre from the axis")] = (
+        0.0
+    )
+
+    @model_validator(mode="after")
+    def _is_convex(self) -> Self:
+        if len(self.tilts) != len(self.tubes) - 1:
+            raise InvalidInput(
+                "tilts", self.tilts, f"{len(self.tubes) - 1} tilts between {len(self.tubes)} arcs"
+            )
+        ends = (0.0, *self.tilts, math.pi)
+        for number, tilt in enumerate(self.tilts):
+            if not ends[number] < tilt < math.pi:
+                raise InvalidInput(
+                    f"tilts.{number}", tilt, "an angle above the one before, and below pi"
+                )
+        size = sum(self.tubes)
+        if not size > 0.0:
+            raise InvalidInput("tubes", self.tubes, "radii of which one is more than 0")
+        for number, arc in enumerate(self.surface.arcs):
+            for tilt in ends[number : number + 2]:
+                if arc.radius + arc.tube * math.sin(tilt) < -ON_AXIS * size:
+                    raise InvalidInput(
+                        f"tubes.{number}", arc.tube, "the radius of an arc beside the axis"
+                    )
+        return self
+
+    @property
+    def surface(self) -> MeridianSurface:
+        """Surface about the centre of mass, in the form that the mechanics uses."""
+        cosines = tuple([math.cos(tilt) for tilt in self.tilts])
+        none = tuple([False for _ in self.tubes])
+        about = MeridianSurface(self.radius, self.center, self.tubes, cosines, none)
+        within = ON_AXIS * sum(self.tubes)
+        spheres = tuple([abs(arc.radius) <= within for arc in about.arcs])
+        return about._replace(spheres=spheres)
 
 
 DEGREE = 16

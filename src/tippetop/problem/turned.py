@@ -2,12 +2,22 @@
 
 # translate module: numpy
 
+import math
 from typing import NamedTuple
 
-from tippetop.lathe.hull import Zone
+from tippetop.lathe.hull import ConvexHull, Zone
 from tippetop.lathe.support import polynomial_support
 from tippetop.lathe.workpiece import Workpiece
-from tippetop.problem.shapes import DEGREE, EccentricSphere, Oval, Ring, Shape, Sphere, Spheroid
+from tippetop.problem.shapes import (
+    DEGREE,
+    Meridian,
+    EccentricSphere,
+    Oval,
+    Ring,
+    Shape,
+    Sphere,
+    Spheroid,
+)
 from tippetop.support.errors import Described, InvalidInput
 
 PROTRUDES = "would reach out of the body if it were complete"
@@ -64,7 +74,7 @@ def touching_surfaces(workpiece: Workpiece, completed: bool = False) -> list[Sha
     if spheroid is not None:
         across, along, height = spheroid
         return [Spheroid(across=across, along=along, center=_above(height, workpiece))]
-    smooth = hull.smooth_parts(reach)
+    smooth = [part for part in hull.smooth_parts(reach) if _is_oval(workpiece, *part, completed)]
     ovals = [_oval(workpiece, *part, completed) for part in smooth]
 
     def is_separate(zone: Zone) -> bool:
@@ -79,21 +89,61 @@ def touching_surfaces(workpiece: Workpiece, completed: bool = False) -> list[Sha
             "has too many",
             "draw arcs rather than many short edges",
         )
-    shapes = [_shape(zone, _above(zone.height, workpiece)) for zone in zones]
-    for zone in zones:
-        if hull.protrusion(zone)[0] > reach and not completed:
-            part = Described(
-                f"a {zone.name} of which only tilts {zone.low:.6g} to {zone.high:.6g} exist"
-            )
-            raise InvalidInput("profile", part, "", PROTRUDES, ACCEPT_COMPLETED)
-    if ovals:
-        distinct = [shape for k, shape in enumerate(shapes) if shape not in shapes[:k]]
+    cut = [] if completed else [row for row in hull.rows(zones) if _is_cut(row, hull, reach)]
+    if cut:
+        complete = [zone for zone in zones if not any(zone in row for row in cut)]
+        shapes = [
+            *((row[0].low, _arcs(row, workpiece)) for row in cut),
+            *((zone.low, _shape(zone, _above(zone.height, workpiece))) for zone in complete),
+        ]
+        ordered = [shape for _, shape in sorted(shapes, key=lambda pair: pair[0])]
+        distinct = [shape for k, shape in enumerate(ordered) if shape not in ordered[:k]]
         return [*ovals, *distinct]
+    shapes_of_zones = [_shape(zone, _above(zone.height, workpiece)) for zone in zones]
+    if ovals:
+        return [
+            *ovals,
+            *[one for k, one in enumerate(shapes_of_zones) if one not in shapes_of_zones[:k]],
+        ]
     outer = [_shape(zone, _above(zone.height, workpiece)) for zone in hull.complete_surfaces(reach)]
     first = outer[0]
     if len(outer) == 1 and isinstance(first, Sphere) and 0.0 < first.center < first.radius:
         return [EccentricSphere(radius=first.radius, eccentricity=first.center / first.radius)]
     return outer
+
+
+def _is_cut(row: list[Zone], hull: ConvexHull, reach: float) -> bool:
+    """Return whether a surface of a row, if complete, would reach out of the body."""
+    return any(zone.radius < 0.0 or hull.protrusion(zone)[0] > reach for zone in row)
+
+
+def _arcs(row: list[Zone], workpiece: Workpiece) -> Shape:
+    """Return the surface of zones that continue each other, with sharp edges at its ends.
+
+    Raises `InvalidInput` if the body lies on a face that such a row bounds.
+    """
+    first, last = row[0], row[-1]
+    for zone, end, pole in ((first, first.low, 0.0), (last, last.high, math.pi)):
+        if end == pole and zone.radius:
+            where = "below" if pole == 0.0 else "above"
+            part = Described(f"a flat end {where} beside an arc that is cut off")
+            raise InvalidInput("profile", part, "", PROTRUDES, ACCEPT_COMPLETED)
+    tubes, tilts = [zone.tube for zone in row], [zone.low for zone in row[1:]]
+    if first.low > 0.0 and first.tube:
+        tubes, tilts = [0.0, *tubes], [first.low, *tilts]
+    if last.high < math.pi and last.tube:
+        tubes, tilts = [*tubes, 0.0], [*tilts, last.high]
+    # The centres follow from that of a sphere, which is exactly on the axis, or of any arc.
+    start = len(tubes) - len(row) - (last.high < math.pi and last.tube > 0.0)
+    anchor = next((k for k, zone in enumerate(row) if zone.name == "sphere"), 0)
+    radius, height = row[anchor].radius, row[anchor].height
+    for k in range(start + anchor - 1, -1, -1):
+        longer = tubes[k + 1] - tubes[k]
+        radius += longer * math.sin(tilts[k])
+        height -= longer * math.cos(tilts[k])
+    return Meridian(
+        tubes=tuple(tubes), tilts=tuple(tilts), center=_above(height, workpiece), radius=radius
+    )
 
 
 def _above(height: float, workpiece: Workpiece) -> float:
@@ -105,6 +155,13 @@ def _above(height: float, workpiece: Workpiece) -> float:
 def allowance(workpiece: Workpiece) -> float:
     """Return the length by which touching surfaces may reach out of a turned body, m."""
     return PROTRUSION * workpiece.outline.size + 2.0 * workpiece.deviation
+
+
+def _is_oval(workpiece: Workpiece, low: float, high: float, completed: bool) -> bool:
+    """Return whether the smooth surface between two tilts is an oval that stays in the body."""
+    center = workpiece.mass_properties.center
+    _, deviation = polynomial_support(workpiece.hull, low, high, center, DEGREE, completed)
+    return completed or deviation <= OVAL_DEVIATION * workpiece.outline.size
 
 
 def _oval(workpiece: Workpiece, low: float, high: float, completed: bool) -> Shape:

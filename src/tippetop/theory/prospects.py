@@ -12,7 +12,7 @@ from tippetop.problem.bodies import Body
 from tippetop.problem.frictions import ViscousFriction
 from tippetop.problem.launch import Launch
 from tippetop.problem.problem import Problem, top_of
-from tippetop.problem.shapes import EccentricSphere, Shape, Sphere
+from tippetop.problem.shapes import Meridian, EccentricSphere, Shape, Sphere
 from tippetop.theory.groups import Group, classify
 from tippetop.theory.prediction import touching_tilts
 from tippetop.theory.steady import SteadyKind, branch_jellett
@@ -41,12 +41,12 @@ class StemTest:
 
 @dataclass(frozen=True)
 class Touch:
-    """First contact of a second surface, and the least spin that leads to it."""
+    """First contact of another surface than the ball, and the least spin that leads to it."""
 
     tilt: float
     """theta, rad."""
     surface: int
-    """Number of that surface."""
+    """Number of that surface; 0 if it is the edge of the cut of the ball."""
     spin: float
     """Least spin of launches, rad/s, that would end beyond this tilt on the sphere alone; inf if
     there is none.
@@ -88,6 +88,7 @@ def prospects(
     tilt
         Tilt of the launches, rad.
     """
+    shapes, cut = _as_balls(shapes)
     sphere = shapes[0]
     if isinstance(sphere, Sphere) and 0.0 < sphere.center < sphere.radius:
         sphere = EccentricSphere(radius=sphere.radius, eccentricity=sphere.center / sphere.radius)
@@ -101,7 +102,7 @@ def prospects(
     )
     group = classify(body.I1 / body.I3, sphere.eccentricity)
     surfaces = (top_of(problem).surface, *(shape.surface for shape in shapes[1:]))
-    touch = _touch(problem, surfaces, group)
+    touch = _touch(problem, surfaces, group, cut)
     stem = (
         _stem(problem, surfaces, touch)
         if isinstance(shapes[-1], Sphere) and len(shapes) > 1
@@ -110,18 +111,41 @@ def prospects(
     return Prospects(sphere.eccentricity, group, stability_limits(problem), tilt, touch, stem)
 
 
-def _touch(problem: Problem, surfaces: tuple[Surface, ...], group: Group) -> Touch | None:
-    ends = touching_tilts(Hull.of(surfaces), problem.launch.tilt)
-    beyond = [at for at in ends if at > problem.launch.tilt]
-    if not beyond:
+def _as_balls(shapes: list[Shape]) -> tuple[list[Shape], float]:
+    """Return surfaces with cut balls complete, and the tilt up to which the first one exists."""
+    balls, cut = list[Shape](), math.inf
+    for number, shape in enumerate(shapes):
+        if not isinstance(shape, Meridian):
+            balls.append(shape)
+            continue
+        arcs = shape.surface.arcs
+        if number == 0:
+            cut = shape.tilts[0]
+        if arcs[0 if number == 0 else -1].is_sphere:
+            ball = arcs[0 if number == 0 else -1]
+            balls.append(Sphere(radius=ball.tube, center=ball.center))
+        else:
+            balls.append(shape)
+    return balls, cut
+
+
+def _touch(
+    problem: Problem, surfaces: tuple[Surface, ...], group: Group, cut: float
+) -> Touch | None:
+    """Return the first contact beyond the ball: of another surface, or of the edge of its cut."""
+    tilt = problem.launch.tilt
+    ends = touching_tilts(Hull.of(surfaces), tilt) if len(surfaces) > 1 else {}
+    beyond = [at for at in ends if at > tilt]
+    first = min([*beyond, cut]) if beyond or cut > tilt else math.inf
+    if not math.isfinite(first):
         return None
     # From upright the top rises along the steady precessions until one is stable.
     needed = max(
         critical_jellett(SteadyKind.UPRIGHT, top_of(problem)),
-        branch_jellett(beyond[0], top_of(problem)),
+        branch_jellett(first, top_of(problem)),
     )
     spin = jellett_line(problem).spin_at(needed if group.leaves_upright else math.inf)
-    return Touch(beyond[0], ends[beyond[0]], spin)
+    return Touch(first, ends.get(first, 0), spin)
 
 
 def _stem(problem: Problem, surfaces: tuple[Surface, ...], touch: Touch | None) -> StemTest:

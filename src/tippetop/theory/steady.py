@@ -106,8 +106,8 @@ def rolling_spin(c: Scalar, surface: Surface) -> Scalar:
 
 
 def has_precession(top: Top) -> bool:
-    """Return whether the body has precessions without slip: not on a sharp tip, which only a spin about
-    its axis leaves at rest.
+    """Return whether the body has precessions without slip: a sharp tip has none, since only a spin
+    about its axis leaves it at rest.
     """
     return not (top.surface.spherical and top.surface.height(0.0) == 0.0)
 

@@ -14,8 +14,8 @@ from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.laws.friction import FrictionLaw
 from tippetop.mechanics.motion import angular_velocity, point_velocity
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.surface import contact_vector
-from tippetop.mechanics.top import RigidBody, Top, kind_of_surface
+from tippetop.mechanics.surfaces.surface import contact_vector, kind_of
+from tippetop.mechanics.top import RigidBody, Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, add, length, scale
 
@@ -143,7 +143,7 @@ def in_units(body: RigidBody, units: Units) -> RigidBody:
         body.mass / units.mass,
         body.transverse_inertia / units.inertia,
         body.axial_inertia / units.inertia,
-        kind_of_surface(body.surface).from_proportions(body.surface.proportions),
+        kind_of(body.surface).from_proportions(body.surface.proportions),
         law_in_units(body.friction, units),
         1.0,
         None if resistance is None else RollingResistance(resistance.length / units.length),

@@ -6,6 +6,7 @@ from tippetop.mechanics.surfaces.surface import (
     Support,
     Surface,
     gap_guard,
+    kind_of,
     support_at,
 )
 from tippetop.mechanics.vectors import Scalar, Vector
@@ -33,7 +34,9 @@ class Hull(NamedTuple):
     @classmethod
     def of(cls, surfaces: tuple[Surface, ...]) -> "Hull":
         """Return the hull of some surfaces; the first is active."""
-        units = tuple(type(surface).from_proportions(surface.proportions) for surface in surfaces)
+        units = tuple(
+            kind_of(surface).from_proportions(surface.proportions) for surface in surfaces
+        )
         return cls(units, tuple(surface.size for surface in surfaces))
 
     @property
@@ -105,7 +108,7 @@ class Hull(NamedTuple):
     def make(self) -> "HullKind":
         """What remains of it without its numbers."""
         return HullKind(
-            tuple(type(unit) for unit in self.units),
+            tuple([kind_of(unit) for unit in self.units]),
             tuple(len(unit.proportions) for unit in self.units),
             self.active,
         )
@@ -114,7 +117,7 @@ class Hull(NamedTuple):
 class HullKind(NamedTuple):
     """What remains of a hull when its numbers are taken away."""
 
-    units: tuple[type[Surface], ...]
+    units: tuple[Any, ...]
     counts: tuple[int, ...]
     active: int
 

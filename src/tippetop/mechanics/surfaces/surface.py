@@ -4,9 +4,9 @@ The support function h(c) is the height of the centre of mass above the table wh
 touches it, as a function of c = cos(tilt). It determines the contact point: see `contact_vector`.
 """
 
-from typing import NamedTuple, Protocol, Self, TypeAlias
+from typing import Any, NamedTuple, Protocol, Self, TypeAlias
 
-from tippetop.mechanics.vectors import Scalar, Vector, power
+from tippetop.mechanics.vectors import Scalar, Vector, either, power
 
 NEARLY_FLAT = 1e-4
 """Sine of the tilt up to which a body that comes down from a flight lands on its face. In flights
@@ -332,6 +332,140 @@ class RingSurface(NamedTuple):
     def from_proportions(cls, proportions: tuple[Scalar, ...]) -> Self:
         """Make the ring with a circle of radius 1 and these proportions."""
         return cls(1.0, *proportions)
+
+
+class MeridianArc(NamedTuple):
+    """Arc of a meridian: a circle of radius `tube` about a point beside the axis."""
+
+    radius: Scalar
+    """Distance of the point from the axis, m: 0 for a sphere."""
+    center: Scalar
+    """Height of the point above the centre of mass, m."""
+    tube: Scalar
+    """Radius of the circle, m: 0 for a sharp edge."""
+    is_sphere: bool
+
+
+class MeridianSurface(NamedTuple):
+    """A surface whose meridian is arcs that continue each other: a ball that is cut off.
+
+    From tilt 0 on, each arc passes the contact on to the next one at a tilt. The circles touch
+    there, so that h and h' are continuous and only h'' jumps: the contact goes on without an
+    impact. Arc k has its centre at (rho_k, zeta_k), rho_{k+1} = rho_k + (r_k - r_{k+1}) sin(theta),
+    zeta_{k+1} = zeta_k - (r_k - r_{k+1}) cos(theta), and h = r_k + rho_k sin(theta) - zeta_k
+    cos(theta). Where an arc ends at a cut, the next one is the edge of the cut, r = 0.
+    """
+
+    radius: Scalar
+    """Distance of the first arc's centre from the axis, m."""
+    center: Scalar
+    """Height of the first arc's centre above the centre of mass, m."""
+    tubes: tuple[Scalar, ...]
+    """Radii of the arcs, m."""
+    cosines: tuple[Scalar, ...]
+    """Cosines of the tilts at which one arc follows another, falling."""
+    spheres: tuple[bool, ...]
+    """Whether each arc has its centre on the axis."""
+
+    @property
+    def arcs(self) -> list[MeridianArc]:
+        """The arcs with their centres."""
+        radius, center = self.radius, self.center
+        arcs = [MeridianArc(radius, center, self.tubes[0], self.spheres[0])]
+        for k, cosine in enumerate(self.cosines):
+            shorter = self.tubes[k] - self.tubes[k + 1]
+            radius = radius + shorter * power(1.0 - cosine * cosine, 0.5)
+            center = center - shorter * cosine
+            arcs.append(MeridianArc(radius, center, self.tubes[k + 1], self.spheres[k + 1]))
+        return arcs
+
+    def support_at(self, axis: Vector) -> Support:
+        """Return the support function and its derivatives for an axis."""
+        return self._support(axis[2], _sine_squared(axis))
+
+    def height(self, c: Scalar) -> Scalar:
+        """Support function h(c), m."""
+        return self._support(c, 1.0 - c * c)[0]
+
+    def slope(self, c: Scalar) -> Scalar:
+        """First derivative h'(c), m."""
+        return self._support(c, 1.0 - c * c)[1]
+
+    def curvature(self, c: Scalar) -> Scalar:
+        """Second derivative h''(c), m."""
+        return self._support(c, 1.0 - c * c)[2]
+
+    def _support(self, c: Scalar, square: Scalar) -> Support:
+        """Return the support function and its derivatives at cos(tilt) and sin(tilt)^2."""
+        inverse = power(square + POLE, -0.5)
+        height, slope, curvature = 0.0 * c, 0.0 * c, 0.0 * c
+        arcs = self.arcs
+        for k in range(len(arcs)):
+            # From the last arc to the first: each holds above its cosine.
+            arc = arcs[len(arcs) - 1 - k]
+            h, h1, h2 = arc.tube - arc.center * c, 0.0 * c - arc.center, 0.0 * c
+            if not arc.is_sphere:
+                h = h + arc.radius * (square * inverse)
+                h1 = h1 - arc.radius * c * inverse
+                h2 = h2 - arc.radius * (inverse * inverse * inverse)
+            if k == 0:
+                height, slope, curvature = h, h1, h2
+            else:
+                holds = self.cosines[len(arcs) - 1 - k] < c
+                height = either(holds, h, height)
+                slope = either(holds, h1, slope)
+                curvature = either(holds, h2, curvature)
+        return height, slope, curvature
+
+    def gap_guard(self, axis: Vector, height: Scalar, margin: Scalar) -> Scalar:
+        """Return what falls through zero as the gap and a margin do, m."""
+        return height - self.support_at(axis)[0] + margin
+
+    @property
+    def spherical(self) -> bool:
+        """It is none, though one of its arcs may be of a sphere."""
+        return False
+
+    @property
+    def size(self) -> Scalar:
+        """The sum of the radii of the arcs, m: that of a ball that is cut off."""
+        return sum(self.tubes)
+
+    @property
+    def proportions(self) -> tuple[Scalar, ...]:
+        """The other lengths in sizes, and the cosines."""
+        size = self.size
+        lengths = [self.radius / size, self.center / size, *[tube / size for tube in self.tubes]]
+        return (*lengths, *self.cosines)
+
+    @classmethod
+    def from_proportions(cls, proportions: tuple[Scalar, ...]) -> Self:
+        """Never used: the surface is made by its `make`, which knows of what arcs."""
+        raise NotImplementedError
+
+    @property
+    def make(self) -> "MeridianKind":
+        """What remains of it without its numbers."""
+        return MeridianKind(self.spheres)
+
+
+class MeridianKind(NamedTuple):
+    """What remains of a surface of arcs when its numbers are taken away."""
+
+    spheres: tuple[bool, ...]
+
+    def from_proportions(self, proportions: tuple[Scalar, ...]) -> MeridianSurface:
+        """Make the surface of unit size with these proportions."""
+        count = len(self.spheres)
+        tubes, cosines = proportions[2 : 2 + count], proportions[2 + count :]
+        return MeridianSurface(
+            proportions[0], proportions[1], tuple(tubes), tuple(cosines), self.spheres
+        )
+
+
+def kind_of(surface: Surface) -> Any:
+    """Return what makes such surfaces of their proportions."""
+    return getattr(surface, "make", type(surface))
 
 
 def support_at(axis: Vector, surface: Surface) -> Support:
