@@ -137,9 +137,10 @@ function depthOf({ points, count }) {
   return count ? 1 : 0;
 }
 
-function isListed(value, { points, count }) {
+function isListed(value, { points, count, fewest }) {
   if (!Array.isArray(value)) return false;
-  return points ? value.every(Array.isArray) : value.length === count;
+  if (points) return value.every(Array.isArray);
+  return value.length <= count && value.length >= (fewest ?? count);
 }
 
 function takenParts(name, value, field, wrong) {

@@ -160,7 +160,11 @@ def _field(info: FieldInfo, field: dict[str, Any]) -> dict[str, Any]:
     elif first.get("items", {}).get("type") == "array":
         description |= {"points": True, "accepted": POINTS}
     elif first.get("type") == "array":
-        description |= {"count": first["maxItems"], "accepted": f"{count_of(info)} numbers"}
+        most, fewest = first["maxItems"], first.get("minItems")
+        written = count_of(info) or (f"{fewest} to {most}" if fewest != most else str(most))
+        description |= {"count": most, "accepted": f"{written} numbers"}
+        if fewest != most:
+            description["fewest"] = fewest
         for item in info.metadata:
             if isinstance(item, Padded):
                 description["least"] = item.least

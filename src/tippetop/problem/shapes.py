@@ -160,11 +160,11 @@ class Ring(Shape):
 
 
 LengthsOfArcs = Annotated[
-    tuple[NotNegative, ...], Field(min_length=2, max_length=8), Quantity("m", "radii of the arcs")
+    tuple[NotNegative, ...], Field(min_length=2, max_length=14), Quantity("m", "radii of the arcs")
 ]
 TiltsOfArcs = Annotated[
     tuple[Number, ...],
-    Field(min_length=1, max_length=7),
+    Field(min_length=1, max_length=13),
     Quantity("rad", "tilts at which one arc follows another"),
 ]
 
@@ -193,7 +193,7 @@ class Meridian(Shape):
     --------
     >>> import tippetop as tt
     >>> from math import acos
-    >>> cut = tt.Meridian(tubes=[0.02, 0.0], tilts=[acos(-0.4)], center=0.004)  # 8 mm above the centre
+    >>> cut = tt.Meridian(tubes=[0.02, 0.0], tilts=[acos(-0.4)], center=0.004)  # 8 mm up
     >>> ball = tt.Sphere(radius=0.02, center=0.004)
     >>> cut.surface.height(-0.3) == ball.surface.height(-0.3)
     True

@@ -10,8 +10,8 @@ from tippetop.lathe.support import polynomial_support
 from tippetop.lathe.workpiece import Workpiece
 from tippetop.problem.shapes import (
     DEGREE,
-    Meridian,
     EccentricSphere,
+    Meridian,
     Oval,
     Ring,
     Shape,
@@ -74,7 +74,8 @@ def touching_surfaces(workpiece: Workpiece, completed: bool = False) -> list[Sha
     if spheroid is not None:
         across, along, height = spheroid
         return [Spheroid(across=across, along=along, center=_above(height, workpiece))]
-    smooth = [part for part in hull.smooth_parts(reach) if _is_oval(workpiece, *part, completed)]
+    curves = hull.smooth_parts(reach)
+    smooth = [part for part in curves if _is_oval(workpiece, *part, completed)]
     ovals = [_oval(workpiece, *part, completed) for part in smooth]
 
     def is_separate(zone: Zone) -> bool:
@@ -82,6 +83,8 @@ def touching_surfaces(workpiece: Workpiece, completed: bool = False) -> list[Sha
 
     zones = [zone for zone in hull.zones if is_separate(zone)]
     if len(zones) > MOST_SURFACES:
+        for part in curves:
+            _oval(workpiece, *part, completed)
         raise InvalidInput(
             "profile",
             Described(f"a body that stands on {len(zones)} surfaces"),
@@ -117,17 +120,24 @@ def _is_cut(row: list[Zone], hull: ConvexHull, reach: float) -> bool:
     return any(zone.radius < 0.0 or hull.protrusion(zone)[0] > reach for zone in row)
 
 
+def _part(row: list[Zone], workpiece: Workpiece) -> Described:
+    """Return which surface of a row would reach out of the body if it were complete."""
+    reach = allowance(workpiece)
+    cut = [zone for zone in row if zone.radius < 0.0 or workpiece.hull.protrusion(zone)[0] > reach]
+    zone = cut[0]
+    if zone.radius < 0.0:
+        return Described("an arc around a point beyond the axis")
+    return Described(f"a {zone.name} of which only tilts {zone.low:.6g} to {zone.high:.6g} exist")
+
+
 def _arcs(row: list[Zone], workpiece: Workpiece) -> Shape:
     """Return the surface of zones that continue each other, with sharp edges at its ends.
 
     Raises `InvalidInput` if the body lies on a face that such a row bounds.
     """
     first, last = row[0], row[-1]
-    for zone, end, pole in ((first, first.low, 0.0), (last, last.high, math.pi)):
-        if end == pole and zone.radius:
-            where = "below" if pole == 0.0 else "above"
-            part = Described(f"a flat end {where} beside an arc that is cut off")
-            raise InvalidInput("profile", part, "", PROTRUDES, ACCEPT_COMPLETED)
+    if (first.low == 0.0 and first.radius) or (last.high == math.pi and last.radius):
+        raise InvalidInput("profile", _part(row, workpiece), "", PROTRUDES, ACCEPT_COMPLETED)
     tubes, tilts = [zone.tube for zone in row], [zone.low for zone in row[1:]]
     if first.low > 0.0 and first.tube:
         tubes, tilts = [0.0, *tubes], [first.low, *tilts]

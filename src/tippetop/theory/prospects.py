@@ -12,7 +12,7 @@ from tippetop.problem.bodies import Body
 from tippetop.problem.frictions import ViscousFriction
 from tippetop.problem.launch import Launch
 from tippetop.problem.problem import Problem, top_of
-from tippetop.problem.shapes import Meridian, EccentricSphere, Shape, Sphere
+from tippetop.problem.shapes import EccentricSphere, Meridian, Shape, Sphere
 from tippetop.theory.groups import Group, classify
 from tippetop.theory.prediction import touching_tilts
 from tippetop.theory.steady import SteadyKind, branch_jellett
