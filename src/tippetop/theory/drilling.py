@@ -17,9 +17,12 @@ import numpy as np
 
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.motion import angular_velocity, sliding_contact
+from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.mechanics.top import Top
 from tippetop.problem.problem import Problem, require_problem, top_of
 from tippetop.support.errors import Described, InvalidInput
+from tippetop.theory.prediction import hull_of, on_surface, touching_tilts
+from tippetop.theory.prospects import jellett_ratio
 from tippetop.theory.requirements import require_creep, require_sphere
 from tippetop.theory.stability import drilling, spectrum
 from tippetop.theory.steady import (
@@ -50,7 +53,9 @@ def standing_time(problem: Problem) -> float:
 
     The time is exact for a launch at tilt 0 or pi, which only the drilling torque changes. For any
     other launch of an eccentric sphere it is that of the inverted spin with its Jellett's integral:
-    the time for which it could stand if it turned over at once. The result is inf without drilling,
+    the time for which it could stand if it turned over at once. A sphere with a stem then stands on
+    the stem, with the integral that the precession without slip has about its tip where that first
+    touches; what is lost while both touch is left out. The result is inf without drilling,
     and 0 if the spin is unstable from the start or the centre of mass is not above the table. A
     small tilt may grow meanwhile, but hardly faster than 1 / omega3.
 
@@ -58,8 +63,8 @@ def standing_time(problem: Problem) -> float:
     ------
     InvalidInput
         If there is no linear motion about a vertical spin: under dry friction of a point, with
-        rolling resistance, or without spin. If a body other than an eccentric sphere is not
-        launched at tilt 0 or pi, or has several surfaces.
+        rolling resistance, or without spin. If a body other than an eccentric sphere, or one whose
+        stem is not the first to touch, is not launched at tilt 0 or pi.
 
     Examples
     --------
@@ -72,6 +77,8 @@ def standing_time(problem: Problem) -> float:
     """
     require_problem(problem)
     top, tilt = top_of(problem), problem.launch.tilt
+    if isinstance(top.surface, Hull):
+        return _standing_time_of_several_surfaces(problem)
     require_creep(top)
     if tilt not in (0.0, math.pi):
         require_sphere(top)
@@ -80,6 +87,31 @@ def standing_time(problem: Problem) -> float:
         return 0.0
     spin = jellett_of_launch(problem) / vertical_spin(kind, top, 1.0).jellett
     return time_to_stand(vertical_spin(kind, top, spin), top)
+
+
+def _standing_time_of_several_surfaces(problem: Problem) -> float:
+    hull, tilt = hull_of(problem), problem.launch.tilt
+    single = on_surface(problem, hull.active)
+    ends = touching_tilts(hull, tilt)
+    beyond = [at for at in ends if at > tilt]
+    if tilt in (0.0, math.pi) or not beyond:
+        return standing_time(single)
+    sphere, number = top_of(single), ends[beyond[0]]
+    require_creep(sphere)
+    require_sphere(sphere)
+    stem = top_of(on_surface(problem, number))
+    inverted = SteadyKind.INVERTED
+    if not stem.surface.spherical or hull.height(-1.0) > stem.surface.height(-1.0):
+        raise InvalidInput(
+            "body.shape",
+            Described(f"one whose surface {number} touches first"),
+            "a sphere with a stem that is round at its end, or a launch at tilt 0 or pi",
+        )
+    if not can_stand(inverted, stem):
+        return 0.0
+    integral = jellett_of_launch(single) * jellett_ratio(beyond[0], sphere, stem.surface)
+    spin = integral / vertical_spin(inverted, stem, 1.0).jellett
+    return time_to_stand(vertical_spin(inverted, stem, spin), stem)
 
 
 def time_to_stand(steady: SteadyState[float], top: Top) -> float:

@@ -153,14 +153,14 @@ def _stem(problem: Problem, surfaces: tuple[Surface, ...], touch: Touch | None) 
     top = Top.of(body.mass, body.I1, body.I3, surfaces[-1], ViscousLaw(1.0), problem.gravity)
     least, launch = critical_jellett(inverted, top), math.nan
     if touch is not None and touch.surface == len(surfaces) - 1:
-        ratio = _jellett_ratio(touch.tilt, top_of(problem), surfaces[-1])
+        ratio = jellett_ratio(touch.tilt, top_of(problem), surfaces[-1])
         launch = max(
             touch.spin, jellett_line(problem).spin_at(least / ratio) if ratio > 0.0 else math.inf
         )
     return StemTest(least, critical_spin(inverted, top), launch)
 
 
-def _jellett_ratio(tilt: float, top: Top, second: Surface) -> float:
+def jellett_ratio(tilt: float, top: Top, second: Surface) -> float:
     """Return the ratio of Jellett's integrals about a second surface and about that of the top.
 
     The motion is that of least energy, with L along I a: the precession without slip, which a slow
