@@ -286,3 +286,21 @@ def test_a_restart_needs_one_time_within_the_run() -> None:
     for time in (1.5, [0.1, 0.2], "soon"):
         with pytest.raises(tt.InvalidInput, match="time"):
             solution.problem_at(time)
+
+
+def test_at_an_impact_the_solution_is_after_it_and_on_request_before_it() -> None:
+    problem = tt.presets.report_problem(spin=50.0, tilt=0.3).replace(
+        {"launch.gap": 0.01, "contact.restitution": 0.5}
+    )
+    run, solution = tt.simulate(problem, 1.0, dense=True)
+    struck = run["event_kind"].values == "impact"
+    times, lost = run["event_time"].values[struck], run["event_energy_lost"].values[struck]
+    assert len(times) > 10
+    after, before = solution(times), solution(times, side="left")
+    assert before.energy - after.energy == pytest.approx(lost, rel=1e-6, abs=1e-14)
+    assert np.all(after.velocity[2] > before.velocity[2])
+    stopped, ended = tt.simulate(problem, 1.0, until="impact", dense=True)
+    end = float(stopped["end_time"])
+    assert ended(end).velocity[2] == ended(end, side="left").velocity[2] < 0.0
+    with pytest.raises(tt.InvalidInput, match="side"):
+        solution(0.1, side="middle")  # type: ignore[call-overload,arg-type]

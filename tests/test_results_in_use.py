@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
@@ -90,3 +91,45 @@ def test_a_problem_is_written_in_the_format_of_its_suffix(tmp_path: Path) -> Non
         PROBLEM.write(tmp_path / "top.toml")
     with pytest.raises(tt.InvalidInput, match="toml"):
         PROBLEM.write(tmp_path / "top.txt")
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "read"),
+    [
+        ("run.csv", {}, {}),
+        ("run.csv", {"decimal": ","}, {"sep": ";", "decimal": ","}),
+        ("run.tsv", {}, {"sep": "\t"}),
+        ("run.txt", {"sep": " ", "units": False}, {"sep": " "}),
+    ],
+)
+def test_tables_have_the_separators_and_headings_that_are_asked_for(tmp_path, name, options, read):
+    run = tt.simulate(tt.presets.report_problem(), 0.1, samples=5)
+    table = pd.read_csv(tt.write_csv(run, tmp_path / name, **options), **read)
+    heading = "tilt (rad)" if options.get("units", True) else "tilt"
+    assert table[heading].to_numpy() == pytest.approx(run["tilt"].values, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "field"),
+    [
+        ("run.xlsx", {}, "path"),
+        ("run.csv", {"sep": ";;"}, "sep"),
+        ("run.csv", {"sep": ",", "decimal": ","}, "sep"),
+        ("run.csv", {"decimal": "'"}, "decimal"),
+        ("run.csv", {"units": "no"}, "units"),
+    ],
+)
+def test_tables_of_other_kinds_are_refused(tmp_path, name, options, field):
+    run = tt.simulate(tt.presets.report_problem(), 0.1, samples=5)
+    with pytest.raises(tt.InvalidInput) as refusal:
+        tt.write_csv(run, tmp_path / name, **options)
+    assert refusal.value.field == field
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_field_of_another_part_is_replaced_and_not_copied():
+    problem = tt.presets.report_problem()
+    with pytest.raises(tt.InvalidInput, match=r"replace\(\{'friction.mu': 0.1\}\)"):
+        problem.model_copy(update={"friction.mu": 0.1})
+    with pytest.raises(tt.InvalidInput, match=r"model_copy\(update=\{'mu': 0.1\}\)"):
+        problem.friction.model_copy(update={"friction.mu": 0.1})

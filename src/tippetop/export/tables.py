@@ -7,26 +7,51 @@ import pandas as pd
 import xarray as xr
 
 from tippetop.results.dataframes import to_dataframe
-from tippetop.support.errors import Unavailable
-from tippetop.support.files import written_beside
+from tippetop.support.errors import InvalidInput, Unavailable, require
+from tippetop.support.files import path_of, require_ending, written_beside
 from tippetop.support.installation import install_command
 
 
 def write_csv(
-    result: xr.Dataset, path: Path | str, overwrite: bool = False, *, table: str | None = None
+    result: xr.Dataset,
+    path: Path | str,
+    overwrite: bool = False,
+    *,
+    table: str | None = None,
+    sep: str | None = None,
+    decimal: str = ".",
+    units: bool = True,
 ) -> Path:
     """Write a table of a run or of a sweep as CSV.
 
     The header has names with units; each row is a sample, an event, a flight or a launch. The
     tables and their columns are those of `to_dataframe`; nan is written as an empty cell.
 
+    Parameters
+    ----------
+    result
+        The run, or the sweep.
+    path
+        The file, whose name ends in .csv, .tsv, .txt or .dat.
+    overwrite
+        Whether an existing file may be replaced.
+    table
+        The table, as of `to_dataframe`.
+    sep
+        What separates cells: by default a comma, a tab in .tsv, and a semicolon beside decimal
+        commas.
+    decimal
+        What separates decimals: "." or ",".
+    units
+        Whether headings have units, as in ``tilt (rad)``.
+
     Raises
     ------
     FileTrouble
         If the file exists and `overwrite` is false, or cannot be written.
     InvalidInput
-        If the result is neither a run nor a sweep or has no such table, or the path is no name of
-        a file.
+        If the result is neither a run nor a sweep or has no such table, the path is no name of
+        such a file, or a separator is none.
 
     Examples
     --------
@@ -37,11 +62,25 @@ def write_csv(
     'time (s),tilt (rad),tilt_rate (rad s-1)'
     """
     frame = _with_columns_alone(to_dataframe(result, table))
-    units = frame.attrs["units"]
-    heads = [f"{name} ({units[name]})" if units[name] not in ("", "1") else name for name in frame]
+    ending = require_ending("path", path_of(path), CSV_ENDINGS)
+    require("units", units, bool, "True or False")
+    if decimal not in (".", ","):
+        raise InvalidInput("decimal", decimal, '"." or ","')
+    if sep is None:
+        sep = "\t" if ending == ".tsv" else ";" if decimal == "," else ","
+    if not (isinstance(sep, str) and len(sep) == 1) or sep == decimal or sep in '"\r\n':
+        accepted = "one character, and not that of decimals"
+        raise InvalidInput("sep", sep, accepted, hint='such as ";"')
+    unit = frame.attrs["units"]
+    is_named = {name: units and unit[name] not in ("", "1") for name in frame}
+    heads = [f"{name} ({unit[name]})" if is_named[name] else name for name in frame]
     with written_beside(path, overwrite) as beside:
-        frame.to_csv(beside, index=False, header=heads)
+        frame.to_csv(beside, index=False, header=heads, sep=sep, decimal=decimal)
     return Path(path)
+
+
+CSV_ENDINGS = (".csv", ".tsv", ".txt", ".dat")
+"""Endings of the names of text files with tables."""
 
 
 def write_parquet(
@@ -73,6 +112,7 @@ def write_parquet(
     """
     need_parquet()
     frame = _with_columns_alone(to_dataframe(result, table))
+    require_ending("path", path_of(path), (".parquet", ".pq"))
     with written_beside(path, overwrite) as beside:
         frame.to_parquet(beside, engine="pyarrow", index=False)
     return Path(path)

@@ -111,6 +111,10 @@ class Monitor:
         """Return whether the inaccuracy is small enough for steps of a relative tolerance."""
         return self.inaccuracy <= max(LARGEST_ERROR, ERROR_PER_TOLERANCE * tolerance)
 
+    def is_breached(self, tolerance: float) -> Scalar:
+        """Return whether the inaccuracy is a number that is too large for such steps."""
+        return self.inaccuracy > max(LARGEST_ERROR, ERROR_PER_TOLERANCE * tolerance)
+
     def breach(self, tolerance: float) -> str:
         """Return a sentence that names what one launch did not keep; empty if it kept all."""
         allowed = max(LARGEST_ERROR, ERROR_PER_TOLERANCE * tolerance)
@@ -120,12 +124,14 @@ class Monitor:
         return ""
 
     def trusted_status(self, status: Status, tolerance: float) -> Status:
-        """Return the status of one launch, or INACCURATE if its run cannot be trusted."""
-        return (
-            Status.INACCURATE
-            if status in STATUSES_OF_MOTION and not self.is_trusted(tolerance)
-            else status
-        )
+        """Return the status of one launch, or INACCURATE if its run cannot be trusted.
+
+        Of a run that failed, numbers that are not finite are no breach: they may be why it failed.
+        """
+        is_broken = not self.is_trusted(tolerance)
+        if status not in STATUSES_OF_MOTION:
+            is_broken = self.is_breached(tolerance)
+        return Status.INACCURATE if is_broken else status
 
     def final_status(self, status: Status, state: State, work: Scalar, tolerance: float) -> Status:
         """Return `trusted_status` after checking the last state with all work since launch."""

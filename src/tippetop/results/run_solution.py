@@ -1,6 +1,7 @@
 """Dense solution of a run: its state, and all its variables, at any time."""
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 import xarray as xr
@@ -23,6 +24,12 @@ from tippetop.results.motion_state import MotionState, states_in
 from tippetop.results.observables import Recorder
 from tippetop.results.sample_times import sample_times
 from tippetop.support.errors import InvalidInput
+from tippetop.support.suggestions import not_one_of
+
+SPACINGS = 4.0
+"""Rounding of the time of an event in natural units that is turned to seconds and back, in spacings
+of doubles: each turn rounds twice. With less, a state may be that on the other side of the event.
+"""
 
 
 class RunSolution:
@@ -55,14 +62,28 @@ class RunSolution:
         self.run, self.end_time = run, float(run["end_time"])
         self._begin, self._block = begin, Block(segments)
 
-    def __call__(self, times: ArrayLike) -> MotionState:
+    def __call__(
+        self, times: ArrayLike, *, side: Literal["left", "right"] = "right"
+    ) -> MotionState:
         """Return the state at a time, s, or the states at several, shape (n,).
+
+        Parameters
+        ----------
+        times
+            The times.
+        side
+            Which of two states is returned at the time of an event at which the state jumps, such
+            as an impact: that after it, "right", or that before it, "left". At the end of the run
+            it is that before, in any case. Times closer than rounding to that of an event are its
+            time.
 
         Raises
         ------
         InvalidInput
-            If a time is no number, or outside the run.
+            If a time is no number, or outside the run, or the side is none.
         """
+        if side not in ("left", "right"):
+            raise not_one_of("side", side, ("left", "right"))
         accepted = f"a time from 0 to the end of the run, {self.end_time:g} s, or a list of them"
         try:
             seconds = np.array(times, dtype=float)
@@ -71,10 +92,10 @@ class RunSolution:
         if seconds.ndim > 1 or not np.all((seconds >= 0.0) & (seconds <= self.end_time)):
             raise InvalidInput("times", times, accepted)
         with np.errstate(all="ignore"):
-            states = self._states(np.atleast_1d(seconds))
+            states = self._states(np.atleast_1d(seconds), side)
         return next(states.each()) if seconds.ndim == 0 else states
 
-    def _states(self, seconds: Array) -> MotionState:
+    def _states(self, seconds: Array, side: Literal["left", "right"]) -> MotionState:
         """Return the states at times, s, shape (n,)."""
         block, begin = self._block, self._begin
         if not len(block.starts):
@@ -82,7 +103,10 @@ class RunSolution:
             rows = read(instants, mode, np.repeat(np.array([numbers]).T, len(seconds), axis=1))
             return MotionState.of(seconds, Instants.unpack(rows), begin.units)
         times = np.minimum(seconds / begin.units.time, block.ends[-1])
-        step = block.step_at(times)
+        # An event's time in seconds is rounded, and so is what is made of it here.
+        rounding = SPACINGS * np.spacing(times)
+        after = times + rounding if side == "right" else times - rounding
+        step = np.minimum(np.searchsorted(block.ends, after, side=side), len(block.ends) - 1)
         part = np.clip(parts_of(times, block.starts[step], block.ends[step]), 0.0, 1.0)
         return states_in(block, step, part, begin.units, seconds)
 

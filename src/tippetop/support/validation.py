@@ -246,6 +246,13 @@ class Part(BaseModel):
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Copy with some fields replaced, and validated like any other."""
+        for name, value in (update or {}).items():
+            if "." in name:
+                can_replace = hasattr(self, "replace")
+                last = name if can_replace else name.rpartition(".")[2]
+                shown = f"{{'{last}': {repr(value) if isinstance(value, str) else short(value)}}}"
+                call = f"replace({shown})" if can_replace else f"model_copy(update={shown})"
+                raise InvalidInput(name, value, "", "is a field of another part", f"write {call}")
         fields = {name: getattr(self, name) for name in type(self).model_fields}
         return type(self)(**{**fields, **(update or {})})
 

@@ -129,7 +129,10 @@ def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
     monitor.check_gap(lowest_gap(end.axis, end.height, top.surface)[None])
     monitor.check_force(np.nan_to_num(ends.least_force)[None])
     is_reported = np.isin(ends.status, [STATUSES.index(status) for status in STATUSES_OF_MOTION])
-    ends.status[is_reported & ~monitor.is_trusted(tolerance)] = STATUSES.index(Status.INACCURATE)
+    is_broken = np.where(
+        is_reported, ~monitor.is_trusted(tolerance), monitor.is_breached(tolerance)
+    )
+    ends.status[is_broken] = STATUSES.index(Status.INACCURATE)
 
 
 @lru_cache
