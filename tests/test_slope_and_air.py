@@ -7,6 +7,7 @@ import pytest
 from scipy.interpolate import make_interp_spline
 
 import tippetop as tt
+from tippetop.export.raycast import view_of
 from tippetop.mechanics.field import STILL
 
 G, R, MASS, MU = 9.8, 0.02, 0.1, 0.3
@@ -385,3 +386,15 @@ def test_spinning_top_drifts_straight_across_the_slope(law, down, spin):
     assert run["spin"].values == pytest.approx(np.full(len(run["time"]), spin), rel=1e-11)
     modes = set(run["mode"].values[1:].tolist())
     assert modes == ({"sliding"} if down else {"sticking"})
+
+
+def test_pictures_of_a_film_are_upright_by_gravity():
+    problem = tt.presets.report_problem().replace({"table.slope": 0.2, "table.azimuth": 1.1})
+    gravity = np.array(problem.gravity_vector)
+    view = view_of(np.zeros(3), np.array([2.6, -6.0, 3.0]), (64, 48), problem.table)
+    assert view.right @ gravity == pytest.approx(0.0, abs=1e-14)
+    assert view.up @ gravity < 0.0
+    level = view_of(np.zeros(3), np.array([2.6, -6.0, 3.0]), (64, 48))
+    assert level.right[2] == 0.0
+    # The eye is as high above the toy's place, by gravity, as beside a level table.
+    assert view.eye @ gravity == pytest.approx(-9.8 * level.eye[2])

@@ -166,7 +166,8 @@ def frames(
             "speed", speed, f"at least {least:.2g}", f"is too slow for a run of {end - start:g} s"
         )
     count = math.floor((end - start) * frame_rate / speed) + 1
-    toy = Toy(Problem.from_json(run.attrs["problem"]).body)
+    problem = Problem.from_json(run.attrs["problem"])
+    toy, table = Toy(problem.body), problem.table
     times = start + np.arange(count) * speed / frame_rate
     poses = poses_at(run, times)
     positions, turns = poses.positions / toy.size, poses.turns.as_matrix()
@@ -175,7 +176,7 @@ def frames(
     headline = describe(run).headline
     cell = 10 ** round(math.log10(toy.size / 2)) / toy.size
     for number, (position, frame) in enumerate(zip(positions, turns, strict=True)):
-        view = view_of(np.array([position[0], position[1], 0.85]), _EYE, pixels)
+        view = view_of(np.array([position[0], position[1], 0.85]), _EYE, pixels, table)
         drawn = picture(toy, view, position, frame, path[: seen[number]], cell)
         yield _captioned(
             drawn, f"{headline[:1].upper()}{headline[1:]}", f"t = {times[number]:.3f} s", speed

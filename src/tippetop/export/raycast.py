@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 
 from tippetop.figures.appearance import SCENES
 from tippetop.figures.toy import FAR, Toy
+from tippetop.problem.table import Table
 
 Array = NDArray[np.floating[Any]]
+LEVEL = Table()
 Area = tuple[int, int, int, int]
 """Area of a picture, pixels: first and end column, first and end row."""
 
@@ -79,12 +81,29 @@ class View(NamedTuple):
         return int(first_column), int(end_column), int(first_row), int(end_row)
 
 
-def view_of(target: Array, offset: Array, pixels: tuple[int, int]) -> View:
-    """Return the camera at an offset from its target."""
+def view_of(target: Array, offset: Array, pixels: tuple[int, int], table: Table = LEVEL) -> View:
+    """Return the camera at an offset from its target, with the vertical upwards in the picture.
+
+    The offset is stated beside a level table. The camera stands on level ground beside a table that
+    slopes.
+    """
+    across = np.array([-np.sin(table.azimuth), np.cos(table.azimuth), 0.0])
+    offset, vertical = (
+        _turned(vector, across, -table.slope) for vector in (offset, np.array([0.0, 0.0, 1.0]))
+    )
     ahead = -offset / np.linalg.norm(offset)
-    right = np.cross(ahead, [0.0, 0.0, 1.0])
+    right = np.cross(ahead, vertical)
     right /= np.linalg.norm(right)
     return View(target + offset, right, np.cross(right, ahead), ahead, pixels)
+
+
+def _turned(vector: Array, about: Array, angle: float) -> Array:
+    """Return a vector turned about a unit vector by an angle, rad."""
+    along = (about @ vector) * about
+    turned: Array = (
+        along + np.cos(angle) * (vector - along) + np.sin(angle) * np.cross(about, vector)
+    )
+    return turned
 
 
 def picture(

@@ -1,5 +1,7 @@
 // Where the scene is seen from: views, turns, and how the camera sinks to the table by itself.
 
+import * as THREE from "three";
+
 // How far down the camera goes, rad from above: nearly to the table.
 const LOWEST = 1.53;
 
@@ -13,12 +15,33 @@ export class Eye {
     // Whether the visitor holds the camera, and by which share of its way it has sunk.
     this.held = false;
     this.sunk = 0;
+    // Turns the table's normal to the vertical, and all that is looked from with it.
+    this.ground = new THREE.Quaternion();
     controls.maxPolarAngle = LOWEST;
     controls.minDistance = 2;
     controls.maxDistance = 30;
     controls.addEventListener("start", () => {
       this.held = true;
     });
+  }
+
+  // Stand on level ground beside a table of some slope, rad, that falls in the direction of its azimuth.
+  standBeside({ slope = 0, azimuth = 0 } = {}) {
+    const across = new THREE.Vector3(-Math.sin(azimuth), Math.cos(azimuth), 0);
+    this.ground.setFromAxisAngle(across, -slope);
+  }
+
+  // Draw with the camera where it is seen from on the ground.
+  drawFrom(draw) {
+    const { camera, ground } = this;
+    const { target } = this.controls;
+    const place = camera.position.clone();
+    const turn = camera.quaternion.clone();
+    camera.position.sub(target).applyQuaternion(ground).add(target);
+    camera.quaternion.premultiply(ground);
+    draw();
+    camera.position.copy(place);
+    camera.quaternion.copy(turn);
   }
 
   // Put the camera at one of the `VIEWS`.

@@ -149,7 +149,8 @@ export class Scene {
   // Show another run.
   load(track) {
     this.track = track;
-    const { body } = track.header;
+    const { body, problem } = track.header;
+    this.eye.standBeside(problem?.table);
     this.setTheme(this.themed);
     const shape = JSON.stringify(body);
     if (shape !== this.shape) {
@@ -277,7 +278,7 @@ export class Scene {
     if (this.trace.visible) cutTrace(this.trace, time);
     this.point(pose, [x, y, z], time, unit);
     this.controls.update();
-    this.renderer.render(this.world, this.camera);
+    this.eye.drawFrom(() => this.renderer.render(this.world, this.camera));
   }
 
   follow(x, y) {
