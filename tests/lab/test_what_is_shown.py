@@ -322,3 +322,20 @@ def test_digits_are_found_out_once_the_picture_is_shown(lab: Lab) -> None:
         return order; }"""
     )
     assert order == ["picture", "digits"]
+
+
+def test_a_slope_is_set_seen_and_told(lab: Lab) -> None:
+    visitor = lab("tab=launch&table.slope=0.05&duration=1")
+    page = visitor.page
+    page.get_by_text("is on a table that slopes by").first.wait_for()
+    level, sloping = visitor.ask(
+        """() => [0, 0.05].map((slope) => {
+          const { eye } = tippetopLab.player.scene;
+          eye.standBeside({ slope, azimuth: 0 });
+          let up;
+          eye.drawFrom(() => { up = eye.camera.quaternion.toArray(); });
+          return up;
+        })"""
+    )
+    half_turn = sum(one * other for one, other in zip(level, sloping, strict=True))
+    assert 2.0 * math.acos(min(abs(half_turn), 1.0)) == pytest.approx(0.05)
