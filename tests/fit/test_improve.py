@@ -57,17 +57,17 @@ def test_the_least_number_from_which_on_a_test_is_passed(fails, least, guess):
 def body_of(seed):
     """Return a random ball with a cavity and a stem, which may or may not turn over."""
     rng = np.random.default_rng(seed)
-    radius = rng.uniform(0.01, 0.02)
+    radius = round(rng.uniform(0.01, 0.02), 6)
     family = BowlFamily(radius, 700.0, 1e-3, 1.5e-3, None, 9.8, 0.1)
     while True:
         at = family.low + rng.uniform(size=3) * np.array([0.4, 0.4, 1.0]) * (
             family.high - family.low
         )
-        if np.all(family.margins(at) > 0.0):
-            return family.body(at)
+        if np.all(family.margins(np.round(at, 6)) > 0.0):
+            return family.body(np.round(at, 6))
 
 
-@pytest.mark.parametrize("seed", seeds(check=0, sample=1, claim=20))
+@pytest.mark.parametrize("seed", seeds(check=0, sample=0, claim=20))
 def test_what_is_claimed_is_seen_in_runs_and_improving_again_makes_nothing_worse(seed):
     better = tt.improve(body_of(seed))
     assert better.spin <= better.before
@@ -100,7 +100,7 @@ def test_a_body_made_of_sizes_gives_them_back(seed):
     assert family.sizes_of(tt.presets.WOODEN) is None
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("goal", ["fastest", "stands longest"])
 def test_goals_are_met_better_than_by_the_least_spin(goal):
     least = tt.improve(tt.presets.WOODEN, trials=0)
