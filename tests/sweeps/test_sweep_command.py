@@ -352,3 +352,38 @@ def test_ctrl_c_leaves_a_line_and_a_store_that_resumes(tmp_path, workers):
     assert "--resume" in said
     assert "Traceback" not in said
     assert 0 < len(Store.resume(out).remaining()) < len(Store.resume(out).sweep.tasks)
+
+
+def test_fields_are_drawn_from_distributions_with_units(tmp_path):
+    options = ("--count", 40, "--duration", 0.01, "--workers", 1, "--no-maps")
+    drawn = "launch.spin=norm:loc=1500rpm:scale=5"
+    run("--draw", drawn, *options, "--seed", 3, "--out", tmp_path / "a.zarr")
+    same_draws = tt.sweep(
+        tt.presets.report_problem(),
+        draw={"launch.spin": {"distribution": "norm", "loc": "1500 rpm", "scale": 5.0}},
+        count=40,
+        seed=3,
+        duration=0.01,
+        workers=1,
+    )
+    spins = tt.read_sweep(tmp_path / "a.zarr")["spin"].values
+    assert spins.tolist() == same_draws["spin"].values.tolist()
+    assert abs(spins.mean() - 50.0 * np.pi) < 5.0 * 5.0 / np.sqrt(40)
+
+
+@pytest.mark.parametrize(
+    "draw", ["launch.spin=norm:loc", "launch.spin=norm:loc=a", "launch.spin=norml:loc=3"]
+)
+def test_a_distribution_that_is_none_is_refused(tmp_path, draw):
+    with pytest.raises(InvalidInput):
+        run("--draw", draw, "--count", 3, "--out", tmp_path / "a.zarr")
+    assert not list(tmp_path.iterdir())
+
+
+def test_trajectories_are_kept_by_an_option(tmp_path):
+    kept = ("--keep", "tilt", "--keep", "axis", "--samples", 5)
+    run(*AXES, *SHORT, *kept, "--out", tmp_path / "a.zarr", "--no-maps")
+    found = tt.read_sweep(tmp_path / "a.zarr")
+    assert found["axis"].shape == (3, 2, 5, 3)
+    assert found["tilt"].values[:, :, 0] == pytest.approx(np.ones((3, 2)))
+    run("--resume", "--out", tmp_path / "a.zarr", "--no-maps")

@@ -54,7 +54,10 @@ Ranges = Annotated[
     list[str] | None,
     typer.Option(
         metavar="FIELD=LOW:HIGH",
-        help="Draw a field at random instead, from a range; append :log for its logarithm.",
+        help=(
+            "Draw a field at random instead, from a range; append :log for its logarithm. Or from a"
+            " distribution of scipy.stats, as in launch.spin=norm:loc=150:scale=5."
+        ),
     ),
 ]
 Count = Annotated[int | None, number_option(int, "Number of draws.")]
@@ -260,6 +263,9 @@ def _axis(text: str) -> tuple[str, Any]:
 def _range(text: str) -> tuple[str, Any]:
     """Return a draw of the command line in the form of a sweep's file."""
     field, equals, values = text.partition("=")
+    name, *parameters = values.split(":")
+    if equals and name.strip().isidentifier():
+        return field.strip(), {"distribution": name.strip(), **_parameters(text, parameters)}
     low, _, high = values.removesuffix(":log").partition(":")
     spacing = "log" if values.endswith(":log") else "linear"
     try:
@@ -268,7 +274,22 @@ def _range(text: str) -> tuple[str, Any]:
             return field.strip(), {"from": first, "to": last, "spacing": spacing}
     except ValueError:
         pass
-    raise InvalidInput("--draw", text, "FIELD=LOW:HIGH, or FIELD=LOW:HIGH:log")
+    raise InvalidInput("--draw", text, DRAWS)
+
+
+DRAWS = "FIELD=LOW:HIGH, FIELD=LOW:HIGH:log, or FIELD=norm:loc=150:scale=5"
+
+
+def _parameters(text: str, parameters: list[str]) -> dict[str, float | str]:
+    """Return the parameters of a distribution of the command line, which may have units."""
+    numbers: dict[str, float | str] = {}
+    for parameter in parameters:
+        name, equals, number = parameter.partition("=")
+        try:
+            (numbers[name.strip()],) = _numbers([number]) if equals else []
+        except ValueError:
+            raise InvalidInput("--draw", text, DRAWS) from None
+    return numbers
 
 
 def _numbers(texts: list[str]) -> list[float | str]:
