@@ -229,7 +229,7 @@ def test_several_surfaces_go_into_text_and_come_back() -> None:
     ("changes", "field", "words"),
     [
         ({"body.shape.1.center": 0.01}, "body.shape.1", "is enclosed by the others"),
-        ({"body.shape.1.radius": -1.0}, "body.shape.1.radius", "a number greater than 0"),
+        ({"body.shape.1.radius": -1.0}, "body.shape.1.radius", "a number at least 0"),
         ({"body.shape": []}, "body.shape", "a table of its fields"),
         ({"contact.liftoff": "ignore"}, "contact.liftoff", "is for bodies of one surface"),
     ],
