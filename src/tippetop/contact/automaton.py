@@ -53,6 +53,7 @@ from tippetop.contact.slip_end_motion import (
 from tippetop.contact.slip_onset import ENDED, ONSET_OVER, UNSEEN, SlipOnset
 from tippetop.contact.soonest_end import on_present_branch, rolls_freely, soonest_end
 from tippetop.contact.surfaces import FACE, TOUCH, WOBBLE, lands_flat, lies_flat
+from tippetop.contact.tip_onset import TILTED, TipOnset
 from tippetop.contact.touching import (
     SLOWEST_ROCKING,
     gap_acceleration,
@@ -89,6 +90,7 @@ from tippetop.mechanics.face_motion import (
     law_of_face,
     lying_flat,
     pressure_reserve,
+    tipping_direction,
 )
 from tippetop.mechanics.flight.free_motion import gap, gap_rate
 from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
@@ -588,10 +590,20 @@ class Automaton:
     def _tip(
         self, contact: Top, time: float, state: State, events: tuple[Event, ...]
     ) -> Transition:
-        """Return the end of a run at the instant at which the body tips over its rim."""
+        """Return the mode in which the body begins to tip over its rim."""
+        direction = tipping_direction(state, contact)
+        if direction is None:
+            detail = (
+                "the pressure has come to the rim of the face, over which nothing tips the body"
+            )
+            return Transition(events, Status.FAILED, state, detail)
         event = Event(EventKind.TIPS, time, surface=contact.number)
-        detail = "the body tips over the rim of its face, from where its motion is not simulated"
-        return Transition((*events, event), Status.FAILED, state, detail)
+        edge = ContactMode(contact, pulls=self.pulls)
+        return Transition((*events, event), TipOnset(contact, edge, direction), state)
+
+    def _after_tipping(self, mode: Mode, end: ModeEnd) -> Transition:
+        """Return the mode of a body that has tipped over its rim."""
+        return Transition((), self.mode_for(off_branch(mode.top), end.state, slips=True), end.state)
 
     # Leaving the table, and impacts.
 
@@ -870,6 +882,7 @@ RULES: dict[str, Rule] = {
     FAILURE: lambda rules, mode, end, time: rules._after_failure(mode, end, time),
     FLAT: lambda rules, mode, end, time: rules.lie_down(off_branch(mode.top), time, end.state, ()),
     STOPPED: lambda rules, mode, end, time: rules._from_rest_on_face(mode.top, time, end.state, ()),
+    TILTED: lambda rules, mode, end, time: rules._after_tipping(mode, end),
     TIPPING: lambda rules, mode, end, time: rules._tip(mode.top, time, end.state, ()),
     AT_REST: lambda rules, mode, end, time: Transition((), Status.AT_REST, end.state),
     LANDING: lambda rules, mode, end, time: rules._after_flight(off_branch(mode.top), end, time),

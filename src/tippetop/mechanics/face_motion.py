@@ -116,6 +116,30 @@ def sliding_on_face(
     return _face_forces(axis, friction, normal, normal * traction.torque, top)
 
 
+def tipping_direction(state: State, top: Top) -> Horizontal | None:
+    """Return the direction into which the axis leans where a body tips over its rim, of floats;
+    None where it does not.
+
+    It tips over the point of the rim that slips outwards, at e with v.e_t = -w a1, if the law at a
+    point moves the centre of pressure beyond that.
+    """
+    (u, v), outer = state.velocity[:2], float(face_radii(top.surface)[1])
+    height = float(support_at(state.axis, top.surface)[0])
+    drilled = outer * float(drilling_rate(state.momentum, top))
+    square = float(u * u + v * v)
+    outward = square - drilled * drilled
+    if not outward > 0.0:
+        return None
+    slip = outward**0.5
+    x, y = (slip * u - drilled * v) / square, (slip * v + drilled * u) / square
+    turning = (0.0, 0.0, drilled / outer)
+    force = top.friction.traction((slip * x, slip * y), turning)[0]
+    if not height * float(-(force[0] * x + force[1] * y)) > outer:
+        return None
+    up = 1.0 if state.axis[2] > 0.0 else -1.0
+    return (up * x, up * y)
+
+
 def pressure_reserve(forces: FaceForces, top: Top) -> Scalar:
     """Return N^2 - (couple / a1)^2, N^2: positive while the centre of pressure is on the face."""
     outer, normal = face_radii(top.surface)[1], forces.force[2]

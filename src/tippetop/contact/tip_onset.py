@@ -1,0 +1,243 @@
+"""The first moments in which a body tips over the rim of its face, from zero tilt.
+
+At zero tilt the rim's point that touches is undefined. The direction into which the axis leans is
+an unknown of its own here, beside the numbers of the contact mode, at Gauss's points of one step:
+there the lean, integrated, must have that direction. Its size grows as the square of the time.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Segment
+from tippetop.integrators.base import Integrator
+from tippetop.integrators.dense import DenseSolution, as_array
+from tippetop.mechanics.contacts.gauss_points import GAUSS, PARTS, STAGES
+from tippetop.mechanics.state import State
+from tippetop.mechanics.vectors import Horizontal, Row, solve
+
+TILTED = "tilted"
+"""Cause of the end of `TipOnset`: the body has a tilt."""
+
+UNFOLLOWED = "the first moments of tipping over the rim cannot be followed"
+
+LONGEST_STEP, HALVINGS = 0.2, 12
+"""Length of the first step that is tried, in natural units of time, and how often it is halved."""
+
+ITERATIONS = 100
+"""Iterations of a step at most: few, but where the normal force rises much as the body tips."""
+
+SMALL_ANGLE = 1e-6
+"""Angle, rad, by which the direction is turned for a derivative: its error is the square."""
+
+UNMOVED = 3e-16
+"""Change of the numbers, in natural units, at which an iteration has converged, per step."""
+
+BARELY_TILTED = 1e-8
+"""Sine of the tilt at which the rates are those at first, to as much."""
+
+UNRESOLVED = 1e-13
+"""Last coefficient of the rates, in natural units, up to which a step is resolved."""
+
+
+@dataclass(frozen=True)
+class TipOnset(Mode):
+    """A body begins to tip over the rim of its face."""
+
+    contact_mode: ContactMode
+    """The mode in which it tips: the edge slips."""
+    direction: Horizontal
+    """The direction into which the axis leans at first."""
+
+    name: ClassVar[str] = "tipping"
+
+    @property
+    def label(self) -> str:
+        """The name of the contact mode."""
+        return self.contact_mode.label
+
+    def state(self, y: Row) -> State:
+        """Return the state as the contact mode has it."""
+        return self.contact_mode.state(y)
+
+    def segments(
+        self, time: float, state: State, end: float, integrator: Integrator
+    ) -> Iterator[Segment]:
+        """Follow one step, as long as the motion allows."""
+        begin, length = [*self.contact_mode.numbers(state)], min(LONGEST_STEP, end - time)
+        for _ in range(HALVINGS):
+            rates = self._rates_at_points(begin, length)
+            if rates is not None:
+                yield self._segment(begin, rates, (time, length), end)
+                return
+            length = 0.5 * length
+        empty = DenseSolution.empty(time, len(begin))
+        yield Segment(self.contact_mode, empty, state, ModeEnd(FAILURE, state, detail=UNFOLLOWED))
+
+    def _segment(
+        self, begin: list[float], rates: list[list[float]], span: tuple[float, float], end: float
+    ) -> Segment:
+        """Return the step with these rates at its points."""
+        (time, length), rows = span, list[Any]()
+        legendre = [coefficients(each) for each in rates]
+        for part in range(PARTS):
+            row = list[float]()
+            for each in legendre:
+                for power in range(STAGES):
+                    terms = [each[k] * GAUSS.powers[part][k][power] for k in range(STAGES)]
+                    row.append(length * sum(terms))
+            rows.append(as_array(row))
+        knots = [length * part / PARTS for part in range(PARTS + 1)]
+        reach = end if length >= end - time else time + length
+        solution = DenseSolution.of_rows(knots, begin, rows).moved(time, reach)
+        last = self.state(
+            [a + length * integral(each) for a, each in zip(begin, rates, strict=True)]
+        )
+        how = ModeEnd(COMPLETED if reach >= end else TILTED, last)
+        return Segment(self.contact_mode, solution, last, how, 1)
+
+    def _rates_at_points(self, begin: list[float], length: float) -> list[list[float]] | None:
+        """Return the rates of every number at the points of a step, by Newton's method for the
+        directions; None where the step is too long.
+        """
+        up = 1.0 if begin[2] > 0.0 else -1.0
+        directions = [self.direction] * STAGES
+        points = self._first_guess(begin, length, self._lever(up))
+        for _ in range(ITERATIONS):
+            before, sizes = points, _sizes(points, directions)
+            if min(sizes) <= 0.0:
+                return None
+            columns = [self._rates_at(points, sizes, directions, j, 0.0) for j in range(STAGES)]
+            turned = [
+                self._rates_at(points, sizes, directions, j, SMALL_ANGLE) for j in range(STAGES)
+            ]
+            rates = [[columns[j][number] for j in range(STAGES)] for number in range(len(begin))]
+            points = _moved(begin, rates, length)
+            # The axis follows the momentum at once: else the direction lags, and swings.
+            points = [*before[:3], *points[3:]]
+            columns = [self._rates_at(points, sizes, directions, j, 0.0) for j in range(STAGES)]
+            for number in range(3):
+                rates[number] = [columns[j][number] for j in range(STAGES)]
+            points = _moved(begin, rates, length)
+            leans = [points[0], points[1]]
+            changes = _turns(columns, turned, leans, (directions, sizes), (length, self._lever(up)))
+            directions = [_turned(directions[j], changes[j]) for j in range(STAGES)]
+            moved = max(
+                [
+                    abs(a - b)
+                    for now, earlier in zip(points, before, strict=True)
+                    for a, b in zip(now, earlier, strict=True)
+                ]
+            )
+            largest = max([1.0, *[abs(each[STAGES - 1]) for each in points]])
+            if moved <= UNMOVED * largest and max(map(abs, changes)) <= UNRESOLVED:
+                tails = [abs(coefficients(each)[STAGES - 1]) for each in rates]
+                return rates if max(tails) <= UNRESOLVED else None
+        return None
+
+    def _lever(self, up: float) -> float:
+        """Return what makes the rate of the axis from the angular momentum: +-1 / I1."""
+        return up / float(self.top.transverse_inertia)
+
+    def _first_guess(self, begin: list[float], length: float, lever: float) -> list[list[float]]:
+        """Return the numbers at the points where the rates stay as they are at first."""
+        points = [[number] * STAGES for number in begin]
+        still = self._rates_at(points, [BARELY_TILTED], [self.direction], 0, 0.0)
+        for j in range(STAGES):
+            elapsed = length * GAUSS.places[j]
+            for number in range(3, len(begin)):
+                points[number][j] += elapsed * still[number]
+            points[0][j] = 0.5 * elapsed * elapsed * lever * still[4]
+            points[1][j] = -0.5 * elapsed * elapsed * lever * still[3]
+        return points
+
+    def _rates_at(
+        self,
+        points: list[list[float]],
+        sizes: Sequence[float],
+        directions: Sequence[Horizontal],
+        place: int,
+        turn: float,
+    ) -> list[float]:
+        """Return the rates at a point where the axis leans into a direction, turned by an angle."""
+        x, y = _turned(directions[place], turn)
+        numbers = [each[place] for each in points]
+        axis = (sizes[place] * x, sizes[place] * y, numbers[2])
+        return [*self.contact_mode.rates((*axis, *numbers[3:]))]
+
+
+def _sizes(points: list[list[float]], directions: Sequence[Horizontal]) -> list[float]:
+    """Return how far the axis leans into each direction."""
+    return [
+        points[0][j] * directions[j][0] + points[1][j] * directions[j][1] for j in range(STAGES)
+    ]
+
+
+def _moved(begin: list[float], rates: list[list[float]], length: float) -> list[list[float]]:
+    """Return the numbers at the points of a step by their rates there."""
+    return [
+        [number + length * at for at in integrated(each)]
+        for number, each in zip(begin, rates, strict=True)
+    ]
+
+
+def _turned(direction: Horizontal, angle: float) -> Horizontal:
+    """Return a direction turned by a small angle."""
+    x, y = direction[0] - angle * direction[1], direction[1] + angle * direction[0]
+    size = (x * x + y * y) ** 0.5
+    return (x / size, y / size)
+
+
+def _turns(
+    columns: list[list[float]],
+    turned: list[list[float]],
+    leans: list[list[float]],
+    lean: tuple[list[Horizontal], list[float]],
+    step: tuple[float, float],
+) -> list[float]:
+    """Return the angles by which the directions at the points turn in an iteration of Newton's.
+
+    The lean across each direction vanishes. It is twice the integral of the rate of the angular
+    momentum, which depends on the direction.
+    """
+    (directions, sizes), (length, lever) = lean, step
+    matrix, right = list[list[float]](), list[float]()
+    squares = length * length
+    for j in range(STAGES):
+        x, y = directions[j]
+        row = list[float]()
+        for k in range(STAGES):
+            p = lever * (turned[k][4] - columns[k][4]) / SMALL_ANGLE
+            q = -lever * (turned[k][3] - columns[k][3]) / SMALL_ANGLE
+            row.append(squares * TWICE[j][k] * (x * q - y * p))
+        row[j] -= sizes[j]
+        matrix.append([each / sizes[j] for each in row])
+        right.append(-(x * leans[1][j] - y * leans[0][j]) / sizes[j])
+    changes: list[float] = solve(matrix, right)
+    return changes
+
+
+def coefficients(values: Sequence[float]) -> list[float]:
+    """Return the coefficients of Legendre's polynomials of values at Gauss's points."""
+    return [sum([a * b for a, b in zip(row, values, strict=True)]) for row in GAUSS.terms]
+
+
+def integral(values: Sequence[float]) -> float:
+    """Return the integral of values at Gauss's points over a step of length 1."""
+    return sum([a * b for a, b in zip(GAUSS.weights, values, strict=True)])
+
+
+def integrated(values: Sequence[float]) -> list[float]:
+    """Return the integrals of values at Gauss's points from 0 to each of them."""
+    return [sum([GAUSS.integrals[k][j] * values[k] for k in range(STAGES)]) for j in range(STAGES)]
+
+
+TWICE = [
+    [
+        sum([GAUSS.integrals[m][j] * GAUSS.integrals[k][m] for m in range(STAGES)])
+        for k in range(STAGES)
+    ]
+    for j in range(STAGES)
+]
+"""Matrix of two integrations, from values at the points to the points."""
