@@ -62,6 +62,8 @@ def test_a_pupil_guesses_watches_and_reads(lab: Lab, screen: str, language: str)
     assert page.locator(".story h2").inner_text() == steps[5]["title"]
     assert not page.locator(".tt-words").is_visible(), "nothing is told before the guess"
     look(visitor)
+    if screen == "phone":
+        assert is_seen(visitor, ".question .strong"), "one sees what to press"
     page.get_by_label(steps[5]["answers"][2], exact=True).check()
     page.get_by_role("button", name=str(words["go"]), exact=True).click()
     visitor.wait("() => tippetopLab.player.playing && tippetopLab.player.scene.ghosts.length === 1")
@@ -77,6 +79,8 @@ def test_a_pupil_guesses_watches_and_reads(lab: Lab, screen: str, language: str)
     assert page.locator(".tt-words strong").inner_text() == steps[5]["happened"]
     assert "155 rad/s" in page.locator(".tt-facts").inner_text()
     look(visitor)
+    if screen == "phone":
+        assert is_seen(visitor, ".story-nav .strong"), "one sees how to go on"
     page.get_by_role("button", name=str(words["next"]), exact=True).click()
     page.get_by_role("heading", name=steps[6]["title"]).wait_for()
     visitor.wait("() => tippetopLab.player.scene.ghosts.length === 0")
