@@ -64,6 +64,13 @@ def power(base: Scalar, exponent: float) -> Scalar:
     return nan if isinstance(base, (int, float)) and base < 0.0 else base**exponent
 
 
+def exceeds(first: Scalar, second: Scalar) -> Scalar:
+    """Return whether a number is larger than another: of floats, arrays and expressions."""
+    if hasattr(first, "graph"):
+        return first.__gt__(second)  # JavaScript's operator does not ask the expression
+    return first > second
+
+
 def either(condition: Scalar, first: Scalar, second: Scalar) -> Scalar:
     """Return the first number where a condition holds, else the second: of floats, arrays and
     expressions.

@@ -6,7 +6,7 @@ touches it, as a function of c = cos(tilt). It determines the contact point: see
 
 from typing import Any, NamedTuple, Protocol, Self, TypeAlias
 
-from tippetop.mechanics.vectors import Scalar, Vector, either, power
+from tippetop.mechanics.vectors import Scalar, Vector, either, exceeds, power
 
 NEARLY_FLAT = 1e-4
 """Sine of the tilt up to which a body that comes down from a flight lands on its face. In flights
@@ -411,7 +411,7 @@ class MeridianSurface(NamedTuple):
             if k == 0:
                 height, slope, curvature = h, h1, h2
             else:
-                holds = self.cosines[len(arcs) - 1 - k] < c
+                holds = exceeds(c, self.cosines[len(arcs) - 1 - k])
                 height = either(holds, h, height)
                 slope = either(holds, h1, slope)
                 curvature = either(holds, h2, curvature)
