@@ -71,8 +71,9 @@ LOSS_ROWS = (
     ("of it to sliding", "energy_lost_sliding", "J", ".7g", ""),
     ("of it to drilling", "energy_lost_drilling", "J", ".7g", ""),
     ("of it to rolling resistance", "energy_lost_rolling", "J", ".7g", ""),
+    ("of it to the air", "energy_lost_air", "J", ".7g", ""),
 )
-"""Further rows for a run that loses energy by drilling or rolling resistance."""
+"""Further rows for a run that loses energy by drilling, by rolling resistance or to the air."""
 
 FLIGHT_ROWS = (
     ("flights", "flights", "", ".7g", ""),
@@ -234,7 +235,7 @@ def _check_files(requested: dict[str, Path], force: bool, duration: float) -> No
 
 def _rows(summary: dict[str, Any], jellett_conserved: bool) -> list[tuple[str, str, str]]:
     numbers = {**summary, **summary["final"]}
-    resisted = summary["energy_lost_drilling"] or summary["energy_lost_rolling"]
+    resisted = any(summary[f"energy_lost_{part}"] for part in ("drilling", "rolling", "air"))
     shown = [*ROWS, *(LOSS_ROWS if resisted else ()), *(FLIGHT_ROWS if summary["flights"] else ())]
     rows = []
     for text, key, unit, form, missing in shown:
