@@ -398,3 +398,21 @@ def test_pictures_of_a_film_are_upright_by_gravity():
     assert level.right[2] == 0.0
     # The eye is as high above the toy's place, by gravity, as beside a level table.
     assert view.eye @ gravity == pytest.approx(-9.8 * level.eye[2])
+
+
+@pytest.mark.slow
+def test_fit_finds_slope_and_air():
+    problem = bodies()["viscous"].replace({"table.slope": 0.02, "air.axial_linear": 3e-7})
+    run = tt.simulate(problem, duration=1.0, samples=61)
+    random = np.random.default_rng(1)
+    noise = {"tilt": 1e-3, "spin": 0.05}
+    columns = {
+        name: run[name].values + size * random.normal(size=61) for name, size in noise.items()
+    }
+    film = tt.Measurement.of_variables(run["time"].values, columns, noise=list(noise.values()))
+    fields = ["table.slope", "air.axial_linear"]
+    guess = problem.replace({"table.slope": 0.018, "air.axial_linear": 2.7e-7})
+    fitted = tt.fit(guess, film, fields)
+    for field in fields:
+        off = abs(fitted.values[field] - problem.get(field))
+        assert off < 4.0 * fitted.errors[field] < 0.3 * problem.get(field)
