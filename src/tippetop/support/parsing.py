@@ -3,12 +3,14 @@
 # translate module: skip
 
 import json
+import re
 import tomllib
 from collections.abc import Callable
 from typing import Any
 
 from tippetop.support.errors import InvalidInput, require
 from tippetop.support.files import named
+from tippetop.support.units import DIGITS
 
 DEEPEST = 20
 """Largest depth of nested tables and lists in a text; problems are three deep."""
@@ -37,14 +39,19 @@ def _parsed(
         fields = loads(text)
         _refuse_depths(fields)
     except (ValueError, RecursionError) as error:
-        reason = _TOO_DEEP if isinstance(error, RecursionError) else error
-        raise InvalidInput(
-            field, file or text.strip(), "", f"is not {language}", str(reason)
-        ) from None
+        reason = _TOO_DEEP if isinstance(error, RecursionError) else str(error)
+        if language == "TOML" and (bare := BARE_UNIT.search(text)):
+            reason = f'write "{bare[1].strip()}" in quotation marks: {reason}'
+        raise InvalidInput(field, file or text.strip(), "", f"is not {language}", reason) from None
     if not isinstance(fields, dict):
         raise InvalidInput(field, fields, f"a {language} object", file=file and named(file))
     return fields
 
+
+BARE_UNIT = re.compile(
+    rf"^[^#\"'\n]*=\s*([+-]?{DIGITS}[ \t]*[A-Za-zµ°/%][^#\"'\n]*)$", re.MULTILINE
+)
+"""A line of TOML that ends in a number with a unit outside quotation marks."""
 
 _TOO_DEEP = f"tables and lists at most {DEEPEST} deep"
 
