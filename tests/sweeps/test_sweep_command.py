@@ -372,7 +372,7 @@ def test_fields_are_drawn_from_distributions_with_units(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "draw", ["launch.spin=norm:loc", "launch.spin=norm:loc=a", "launch.spin=norml:loc=3"]
+    "draw", ["launch.spin=norm:loc", "launch.spin=norm:loc=a", "launch.spin=gaussian:loc=3"]
 )
 def test_a_distribution_that_is_none_is_refused(tmp_path, draw):
     with pytest.raises(InvalidInput):
