@@ -28,7 +28,8 @@ def summarize(run: xr.Dataset) -> dict[str, Any]:
         liftoff_time (s), max_height (m), min_normal_force (N), initial_energy, energy_lost,
         energy_lost_sliding, energy_lost_drilling, energy_lost_rolling, energy_lost_air (J),
         jellett_drift and energy_error (relative), flights (how many), airborne_time (s),
-        max_gap (m), energy_lost_impacts (J), events (kind and time, s), integrator, steps, evaluations.
+        max_gap (m), energy_lost_impacts (J), events (kind and time, s), integrator, steps,
+        evaluations.
         Numbers that do not exist are None.
 
     Examples
