@@ -32,6 +32,12 @@ ASYMMETRY = 0.01
 LONG_SIDE = 0.5
 """Share of the extent of a drawing from which a straight side may be its axis."""
 
+UNDECIDED = "may be"
+"""Beginning of refusals that ask what a drawing means."""
+
+WHOLE_SIDE = 0.95
+"""Share of the extent of a drawing from which a straight side runs over its whole length."""
+
 AXES = "x=NUMBER or y=NUMBER, a place on the sheet, or x or y alone"
 """Accepted axes, in messages."""
 
@@ -141,11 +147,11 @@ def read_along(
 
 
 def _is_readable(sheet: Sheet, directions: str, place: float | None, tolerance: float) -> bool:
-    """Return whether a drawing has a profile."""
+    """Return whether a drawing has a profile, or may have several."""
     try:
         read_along(sheet, directions, place, tolerance, "profile")
-    except InvalidInput:
-        return False
+    except InvalidInput as error:
+        return error.fault.startswith(UNDECIDED)
     return True
 
 
@@ -217,9 +223,10 @@ def _likely_directions(sheet: Sheet, directions: str, place: float | None, field
         or not closed
         or len(closed) < len(outlines)
         or _difference(closed, middle) <= ASYMMETRY * size
-        or _difference(turned, level) > ASYMMETRY * size
     ):
         return directions
+    if _difference(turned, level) > ASYMMETRY * size:
+        return _direction_of_half(closed, turned, directions, size, field)
     straight = [
         (stroke.first, stroke.last)
         for path in closed
@@ -246,6 +253,48 @@ def _likely_directions(sheet: Sheet, directions: str, place: float | None, field
             " command line --axis",
         )
     return directions
+
+
+def _direction_of_half(
+    upright: list[Path], turned: list[Path], directions: str, size: float, field: str
+) -> str:
+    """Return the directions of the axis beside half an outline that has no symmetry.
+
+    The axis is the straight side over the whole length of the drawing. A drawing with its axis on
+    its left, or at 0, is taken at once. If another side is as long as the drawing, and the left one
+    is straight in a part, the outline may be half of two bodies: then `InvalidInput` is raised.
+    """
+    straight, at_zero = [], False
+    for paths in (upright, turned):
+        points, _ = _chords(paths)
+        extent = float(np.ptp(points.imag))
+        for side in (float(points.real.min()), float(points.real.max())):
+            at_zero = at_zero or abs(side) <= GAP * size
+            straight.append(_straight_length(paths, side, size) / extent)
+    whole = [number for number in range(4) if straight[number] >= WHOLE_SIDE]
+    if at_zero or 0 in whole or not whole:
+        return directions
+    if len(whole) == 1 and len([share for share in straight if share > 0.0]) == 1:
+        return "x" if whole[0] == 1 else "y"
+    raise InvalidInput(
+        field,
+        Described("an outline with straight sides that is not symmetric"),
+        "",
+        "may be half of a body beside one of them or another",
+        "state the place of its axis, axis='x=NUMBER' for upright or 'y=NUMBER' for level, at the"
+        " command line --axis",
+    )
+
+
+def _straight_length(paths: list[Path], side: float, size: float) -> float:
+    """Return the length of the straight strokes on an upright line, of those that end there."""
+    length = 0.0
+    for path in paths:
+        for stroke in path:
+            apart = max(abs(stroke.first.real - side), abs(stroke.last.real - side))
+            if stroke.radius == math.inf and apart <= ALONG * size:
+                length += abs(stroke.last - stroke.first)
+    return length
 
 
 # translate: skip
