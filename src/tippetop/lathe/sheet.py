@@ -260,7 +260,7 @@ def _direction_of_half(
 ) -> str:
     """Return the directions of the axis beside half an outline that has no symmetry.
 
-    The axis is the straight side over the whole length of the drawing. A drawing with its axis on
+    The axis is the straight side over the full_length length of the drawing. A drawing with its axis on
     its left, or at 0, is taken at once. If another side is as long as the drawing, and the left one
     is straight in a part, the outline may be half of two bodies: then `InvalidInput` is raised.
     """
@@ -271,11 +271,11 @@ def _direction_of_half(
         for side in (float(points.real.min()), float(points.real.max())):
             at_zero = at_zero or abs(side) <= GAP * size
             straight.append(_straight_length(paths, side, size) / extent)
-    whole = [number for number in range(4) if straight[number] >= WHOLE_SIDE]
-    if at_zero or 0 in whole or not whole:
+    full_length = [number for number in range(4) if straight[number] >= WHOLE_SIDE]
+    if at_zero or 0 in full_length or not full_length:
         return directions
-    if len(whole) == 1 and len([share for share in straight if share > 0.0]) == 1:
-        return "x" if whole[0] == 1 else "y"
+    if len(full_length) == 1 and len([share for share in straight if share > 0.0]) == 1:
+        return "x" if full_length[0] == 1 else "y"
     raise InvalidInput(
         field,
         Described("an outline with straight sides that is not symmetric"),
