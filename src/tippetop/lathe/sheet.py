@@ -260,7 +260,7 @@ def _direction_of_half(
 ) -> str:
     """Return the directions of the axis beside half an outline that has no symmetry.
 
-    The axis is the straight side over the full_length length of the drawing. A drawing with its axis on
+    The axis is the straight side over the full length of the drawing. A drawing with its axis on
     its left, or at 0, is taken at once. If another side is as long as the drawing, and the left one
     is straight in a part, the outline may be half of two bodies: then `InvalidInput` is raised.
     """
