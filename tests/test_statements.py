@@ -108,7 +108,7 @@ def test_the_page_on_security_names_the_files_that_are_read() -> None:
     read = " ".join(page[page.index("reads") : page.index("can serve")].split())
     workpieces = re.search(r"workpieces \((.*?)\)", read)[1].split(", ")
     assert {f".{kind.lower()}" for kind in workpieces} == {".toml", ".csv", *files.DRAWINGS}
-    for kind in ("problems (TOML, JSON)", "runs (NetCDF)", "sweeps (TOML, Zarr)"):
+    for kind in ("problems (TOML, JSON, MJCF)", "runs (NetCDF)", "sweeps (TOML, Zarr)"):
         assert kind in read
     cache = page[page.index("The cache") :].partition(".")[0]
     assert "pickle" not in cache
@@ -119,6 +119,7 @@ GENERATED_KINDS = {".json", ".svg", ".png", ".gif", ".ipynb", ".txt"}
 WRITTEN_BY_HAND = {
     ".binder/requirements.txt",
     "docs/_static/top.svg",
+    "src/tippetop/engines/suite/test_suite.py.txt",
     "src/tippetop/results/account_en.json",
     "web/notices.txt",
     "web/package.json",

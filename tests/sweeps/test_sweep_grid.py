@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import tomllib
 
 import numpy as np
@@ -198,8 +199,7 @@ def test_a_sweep_is_read_from_one_file(tmp_path):
 
 def test_draws_are_read_from_a_file(tmp_path):
     text = f"[problem]\n{report_problem().to_toml()}"
-    problem = text.replace("[body", "[problem.body").replace("[friction", "[problem.friction")
-    problem = problem.replace("[launch", "[problem.launch").replace("[contact", "[problem.contact")
+    problem = re.sub(r"^\[(?!problem\])", "[problem.", text, flags=re.MULTILINE)
     spins = '\n[draw]\nlaunch.spin = { from = 1, to = 2, spacing = "log" }\n'
     (tmp_path / "sweep.toml").write_text("count = 4\nseed = 9\n" + problem + spins)
     draws = Draws.of({"launch.spin": {"from": 1, "to": 2, "spacing": "log"}}, 4, 9)
