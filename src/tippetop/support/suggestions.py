@@ -4,6 +4,7 @@
 
 from collections.abc import Collection, Iterable, Mapping
 from difflib import get_close_matches
+from itertools import groupby
 
 from tippetop.support.errors import InvalidInput
 
@@ -76,7 +77,17 @@ def unknown_field(
         hint = f"it is a field of the kind {' or '.join(kinds)}"
     if not hint and (meant := likely(name, names, places)):
         hint = f"did you mean {meant}?"
-    return InvalidInput(name, value, f"one of {', '.join(names)}", UNKNOWN, hint)
+    return InvalidInput(name, value, f"one of {_listed(names)}", UNKNOWN, hint)
+
+
+def _listed(names: Iterable[str]) -> str:
+    """Return a list of full names, with the part said once that several have in common."""
+    groups = []
+    for part, group in groupby(names, lambda name: name.partition(".")[0]):
+        inside = [name.removeprefix(f"{part}.") for name in group]
+        whole = part if inside == [part] else f"{part}.{inside[0]}"
+        groups.append(whole if len(inside) == 1 else f"{part}.{{{', '.join(inside)}}}")
+    return ", ".join(groups)
 
 
 UNKNOWN = "is given for an unknown field"
