@@ -249,7 +249,11 @@ def test_what_could_be_held_by_a_pull_only_slips():
         way, momentum = rng.normal(size=3), tuple(rng.normal(size=3))
         axis = tuple(way / np.linalg.norm(way))
         held = forces_and_accelerations(ContactPoint.of(axis, momentum, top), None)[0]
-        if held.force[2] > 0.0 or slip_reserve(top, held) < 0.0 or not presses(axis, momentum, top):
+        if (
+            held.force[2] > 0.0
+            or slip_reserve(top, held) < 0.0
+            or not presses(axis, momentum, top, None)
+        ):
             continue
         state = on_table(
             SlidingState(axis, momentum, velocity_without_slip(axis, momentum, top)), top

@@ -27,6 +27,22 @@ outcome.
 """
 
 
+def thrown(fields: dict[str, Any]) -> dict[str, Any]:
+    """Give a launch across a gap the velocity with which its lowest point moves by the slip."""
+    launch = dict(fields["launch"])
+    if not launch.get("gap"):
+        return fields
+    gap = launch.pop("gap")
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", category=tt.Implausible)
+        try:
+            velocity = tt.Problem(**fields | {"launch": launch}).start().velocity
+        except TippetopError:
+            return fields
+    del launch["slip"]
+    return fields | {"launch": launch | {"gap": gap, "velocity": list(map(float, velocity))}}
+
+
 def hostile(random: np.random.Generator) -> dict[str, Any]:
     """Fields of a problem: mostly ordinary numbers, some of them tiny, huge, zero, negative or
     none.
@@ -80,13 +96,15 @@ def hostile(random: np.random.Generator) -> dict[str, Any]:
     if contact["liftoff"] == "fly" and random.random() < 0.3:
         launch["gap"] = number(1e-4, 1.0)
     body = {"mass": mass, "shape": shape, "I1": transverse, "I3": number(0.2, 1.8) * transverse}
-    return {
-        "body": body,
-        "friction": friction,
-        "launch": launch,
-        "contact": contact,
-        "gravity": some(9.81, number(0.1, 30.0)),
-    }
+    return thrown(
+        {
+            "body": body,
+            "friction": friction,
+            "launch": launch,
+            "contact": contact,
+            "gravity": some(9.81, number(0.1, 30.0)),
+        }
+    )
 
 
 def broken(problem: tt.Problem, run: Any) -> list[str]:
@@ -134,7 +152,7 @@ def test_hostile_problems_end_with_an_outcome_or_a_sentence(seeds: range) -> Non
         pytest.param(66, {"too_many_steps"}, id="a small patch that is struck"),
         pytest.param(1284, {"too_many_steps"}, id="slip that is about to end next to a branch"),
         pytest.param(
-            1275, {"failed"}, id="a touchdown without impulse or slip", marks=pytest.mark.slow
+            1275, {"inaccurate"}, id="a touchdown without impulse or slip", marks=pytest.mark.slow
         ),
         pytest.param(
             6941, {"completed"}, id="slip of hardly more than rounding at a launch in flight"

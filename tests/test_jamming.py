@@ -210,7 +210,7 @@ def test_motion_that_leads_to_where_no_force_is_told_ends_there() -> None:
         contact=tt.Contact(liftoff="fly"),
     )
     run = tt.simulate(problem, 0.2, samples=101)
-    assert run.attrs["status"] == "failed"
+    assert run.attrs["status"] == "inaccurate"  # the force at the end itself is 0 / 0
     assert "rigid bodies do not tell" in run.attrs["message"]
     last = {name: run[name].values[-1] for name in ("axis", "angular_momentum", "velocity")}
     touch = sliding_contact(

@@ -25,7 +25,16 @@ from tippetop.support.units import number_in
 
 
 class StepState(NamedTuple):
-    """Where a top is after a step, in SI units."""
+    """Where a top is after a step, in SI units.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> stepper = tt.Stepper(tt.presets.report_problem())
+    >>> after = stepper.step(0.01)
+    >>> after.mode, after.status.name, bool(after.state.tilt > 0.09)
+    ('sliding', 'COMPLETED', True)
+    """
 
     time: float
     """Time since the reset, s."""
