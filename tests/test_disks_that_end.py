@@ -112,7 +112,7 @@ def check_end(problem: tt.Problem, imbalance: float = 1e-8) -> xr.Dataset:
     assert len(down) == 1
     assert float(run["energy_error"]) < imbalance
     end, unit = float(down[0]), math.sqrt(outer_radius(problem.body) / G)
-    last = solution(end)
+    last = solution(end, side="left")
     assert last.tilt < 1e-10
     if abs(last.tilt_rate) > SLAPPING:
         lasts = 4e-6 * unit

@@ -32,7 +32,7 @@ from tippetop.problem.frictions import (
 )
 from tippetop.problem.launch import Launch
 from tippetop.problem.problem import Problem, top_of
-from tippetop.problem.shapes import EccentricSphere, Oval, Ring, Sphere, Spheroid
+from tippetop.problem.shapes import EccentricSphere, Meridian, Oval, Ring, Sphere, Spheroid
 from tippetop.support.errors import FileTrouble, InvalidInput, TippetopError
 from tippetop.support.field_paths import dotted_names, part_at
 from tippetop.support.validation import Quantity
@@ -68,6 +68,7 @@ PARTS = [
     RegularizedCoulombFriction,
     Ring,
     Sphere,
+    Meridian,
     Oval,
     Spheroid,
     ViscousFriction,
@@ -326,7 +327,7 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("name", "kinds"),
         [
-            ("body.shape.kind", "eccentric_sphere, sphere, ring, oval, spheroid"),
+            ("body.shape.kind", "eccentric_sphere, sphere, ring, meridian, oval, spheroid"),
             ("friction.kind", "viscous, regularized_coulomb"),
         ],
     )

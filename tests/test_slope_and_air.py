@@ -278,6 +278,30 @@ def test_sweep_equals_runs():
                 assert cell == pytest.approx(float(run[name]), rel=1e-8, abs=1e-15)
 
 
+def test_a_cell_without_slope_and_air_settles_as_its_run():
+    problem = tt.presets.report_problem()
+    run = tt.simulate(problem, duration=10.0)
+    for name, values in (("table.slope", [0.0, 0.01]), ("air.axial_linear", [0.0, 1e-8])):
+        swept = tt.sweep(problem, {name: values}, duration=10.0)
+        assert swept["outcome"].values[0] == run["outcome"].item() == "inverted"
+        assert float(swept["arrival_time"][0]) == pytest.approx(float(run["arrival_time"]))
+        assert not bool(swept["is_settled"][1])
+
+
+def test_a_slope_is_told_of_what_still_moves_on_it():
+    moving = tt.presets.report_problem().replace({"table.slope": 0.05})
+    assert "no spin on it is steady" in str(tt.describe(tt.simulate(moving, duration=0.2)))
+    coin = tt.Problem(
+        body=tt.presets.COIN,
+        friction=tt.CoulombFriction(mu=0.5),
+        launch=tt.Launch(tilt=0.0, spin=3.0),
+        table=tt.Table(slope=0.05),
+    )
+    run = tt.simulate(coin, duration=2.0)
+    assert run.attrs["status"] == "at_rest"
+    assert "steady" not in str(tt.describe(run))
+
+
 @pytest.mark.parametrize("theory", [tt.predict, tt.critical_spins, tt.steady_states])
 def test_theory_of_level_tables_refuses(theory):
     problem = tt.presets.report_problem()

@@ -107,10 +107,14 @@ def test_misuse_is_a_sentence_and_nothing_is_written_over(tmp_path):
     assert files_of(tmp_path) == before
     assert CliRunner().invoke(app, [*words, "--force"]).exit_code == 0
     assert files_of(tmp_path) == before
+    spins = {"launch.spin": [1.0]}
+    tt.sweep(tt.presets.report_problem(), spins, duration=0.01, out=tmp_path / "sweep.zarr")
+    with pytest.raises(tt.FileTrouble, match="no data set"):
+        dataset.write_dataset(tmp_path / "sweep.zarr", 1, overwrite=True)
     (tmp_path / "mine.zarr").mkdir()
-    with pytest.raises(tt.FileTrouble, match="no Zarr store"):
+    with pytest.raises(tt.FileTrouble, match="no data set"):
         dataset.write_dataset(tmp_path / "mine.zarr", 1, overwrite=True)
-    for wrong in ({"count": 0}, {"seed": -1}, {"samples": 1}, {"duration": 0.0}):
+    for wrong in ({"count": 0}, {"seed": -1}, {"samples": 1}, {"duration": 0.0}, {"workers": -3}):
         with pytest.raises(tt.InvalidInput, match=next(iter(wrong))):
             dataset.write_dataset(tmp_path / "b.zarr", **{"count": 1, **wrong})
     with pytest.raises(tt.InvalidInput, match="zarr"):

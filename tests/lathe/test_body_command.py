@@ -80,11 +80,12 @@ def test_people_are_told_too(files):
 
 
 @pytest.mark.slow
-def test_the_spin_from_which_it_stands_is_that_of_runs(files):
+def test_a_top_that_theory_has_stand_and_drilling_does_not_let_is_told_by_runs(files):
     told = json.loads(said("top.toml", "--json"))
-    least, body = told["stands_from"], tt.Body.turned(files / "top.toml")
-    assert least > told["stem"]["least_launch_spin"], "losses while both touch need more"
-    assert f"{least:.3g} rad/s" in " ".join(said("top.toml").split())
+    assert told["stem"]["least_launch_spin"] < 300.0, "without loss while both touch it would stand"
+    assert told["stands_from"] is None
+    assert "no spin" in " ".join(said("top.toml").split())
+    body = tt.Body.turned(files / "top.toml")
 
     def highest(spin):
         patch = tt.ContensouFriction(mu=0.3, patch_radius=5e-4)
@@ -92,7 +93,7 @@ def test_the_spin_from_which_it_stands_is_that_of_runs(files):
         run = tt.simulate(tt.Problem(body=body, friction=patch, launch=launch), 20.0, samples=2)
         return float(run["max_tilt"])
 
-    assert highest(0.99 * least) < math.pi - 0.1 < highest(1.01 * least)
+    assert max(map(highest, (150.0, 300.0, 600.0))) < math.pi - 0.1
 
 
 def test_the_problem_is_one_that_is_simulated(files):

@@ -53,6 +53,7 @@ def engines(
         require_ending("--plot", plot, DRAWINGS)
         place_for(plot, force)
     list(comparison.tasks(engine, case))
+    steps = [number_of("--step", one, "s") or 0.0 for one in step or ()] or comparison.STEPS
     names = comparison.installed(engine)
     remark = ""
     installed_others = set(names) - {"moreau"}
@@ -64,7 +65,6 @@ def engines(
                 " with: pip install 'tippetop[engines]'"
             )
     else:
-        steps = [number_of("--step", one, "s") or 0.0 for one in step or ()] or comparison.STEPS
         with progress_bar("starting") as progress:
             results = comparison.compare(out, names, case, steps, progress=progress)
     best = comparison.verdicts(results)

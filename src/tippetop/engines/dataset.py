@@ -106,11 +106,13 @@ def write_dataset(
     for name, value, least in (("count", count, 1), ("seed", seed, 0), ("samples", samples, 2)):
         if not is_whole(value) or value < least:
             raise InvalidInput(name, value, f"a whole number of at least {least}")
+    if workers is not None and (not is_whole(workers) or workers < 1):
+        raise InvalidInput("workers", workers, "a whole number of at least 1")
     card = place.with_suffix(".md")
     for one in (place, card):
         refuse_overwriting(one, overwrite)
-    if place.exists() and not (place / "zarr.json").is_file():
-        raise FileTrouble(f"{named(place)} is no Zarr store, and not replaced")
+    if place.exists() and not _is_dataset(place):
+        raise FileTrouble(f"{named(place)} is no data set of random problems, and not replaced")
     times = np.linspace(0.0, float(seconds), samples)
     beside = place.with_name(f".{place.name}.part")
     with in_words(place, "written"):
@@ -124,6 +126,15 @@ def write_dataset(
             shutil.rmtree(beside, ignore_errors=True)
         card.write_text(_card(count, seed, times), encoding="utf-8")
     return place
+
+
+def _is_dataset(place: Path) -> bool:
+    """Return whether a folder is a data set that this module wrote."""
+    try:
+        attributes = json.loads((place / "zarr.json").read_text(encoding="utf-8"))["attributes"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+    return isinstance(attributes, dict) and "dataset" in attributes
 
 
 def _fill(

@@ -94,6 +94,17 @@ class OuterField(NamedTuple):
         """Whether there is air, which takes energy."""
         return self.resists_turning or self.drag is not None
 
+    # translate: skip
+    def without_zeros(self) -> "OuterField | None":
+        """Return the field of the parts that are not zero; None if all are. Of floats."""
+        slope = self.slope if self.slope is not None and any(self.slope) else None
+        axial, transverse, drag = (
+            part if part is not None and any(part.numbers) else None
+            for part in (self.axial, self.transverse, self.drag)
+        )
+        left = OuterField(slope, axial, transverse, drag)
+        return None if left == OuterField() else left
+
     def couple(self, axis: Vector, spin: Scalar, turning: Vector) -> Vector:
         """Return the couple of air, N m.
 

@@ -446,7 +446,7 @@ def _theory(facts: Facts) -> list[Clause]:
 def _outer_field(facts: Facts) -> list[Clause]:
     """Return the clauses of a sloping table and of air."""
     clauses, table = list[Clause](), facts.problem.table
-    if not table.is_level:
+    if not table.is_level and facts.status is Status.COMPLETED:
         clauses.append(Clause("table_slopes", {"tilt": table.slope}, "theory"))
     lost = facts.metrics["energy_lost_air"]
     if lost > 0.0:

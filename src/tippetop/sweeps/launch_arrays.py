@@ -75,6 +75,8 @@ class Launches:
         top = off_branch(self._top(launch))
         if top.rolling_resistance is not None and top.rolling_resistance.length == 0.0:
             top = top.altered(rolling_resistance=None)
+        if top.body.field is not None:
+            top = top.altered(field=top.body.field.without_zeros())
         if self.rules is not None:
             automaton: Automaton = self.rules[launch](top)
             return automaton
