@@ -103,7 +103,7 @@ def test_names_that_cannot_be_are_refused(words: list[str], sentence: str) -> No
         ),
         ("simulate --samples 2.5", "--samples: 2.5 is not a whole number"),
         ("simulate --tolerance 1,5", "--tolerance: 1,5 is not a finite number (write 1.5)"),
-        ("engines --step x", "--step: 'x' is not a finite number"),
+        ("engines --step x", "--step: 'x' is not a number (write a number in s, or with its unit)"),
         ("sweep --workers many", "--workers: 'many' is not a whole number"),
         (
             "lab --port 99999",
