@@ -5,6 +5,7 @@ them.
 import json
 import math
 import subprocess
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from tippetop.mechanics.motion import angular_velocity
 from tippetop.page_engine import HERE
 from tippetop.problem.problem import top_of
 from tippetop.results.catalogue import LISTED, METRICS, SAMPLED
+from tippetop.support.errors import TippetopError
 
 SAMPLES = 41
 TOLERANCE = 3e-14
@@ -72,6 +74,22 @@ def any_of(random: np.random.Generator, kinds: list[dict[str, Any]]) -> dict[str
     return kinds[random.integers(len(kinds))]
 
 
+def thrown(fields: dict[str, Any]) -> dict[str, Any]:
+    """Give a launch across a gap the velocity with which its lowest point moves by the slip."""
+    launch = dict(fields["launch"])
+    if not launch.get("gap") or "slip" not in launch:
+        return fields
+    gap = launch.pop("gap")
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", category=tt.Implausible)
+        try:
+            velocity = tt.Problem(**fields | {"launch": launch}).start().velocity
+        except TippetopError:
+            return fields
+    del launch["slip"]
+    return fields | {"launch": launch | {"gap": gap, "velocity": list(map(float, velocity))}}
+
+
 def launch_of(seed: int) -> dict[str, Any]:
     """The fields of a problem; some are refused."""
     random = np.random.default_rng(seed)
@@ -105,7 +123,7 @@ def launch_of(seed: int) -> dict[str, Any]:
     }
     if random.random() < 0.2:
         fields["rolling_resistance"] = size * 10.0 ** random.uniform(-3.5, -1.5)
-    return fields
+    return thrown(fields)
 
 
 def in_javascript(

@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 
 import tippetop as tt
 from campaigns import seed_ranges
+from launches import thrown
 from tippetop.contact import collision, slip_end_motion
 from tippetop.contact import impact as contact_impact
 from tippetop.integrators import make_integrator, sampling
@@ -25,22 +26,6 @@ CLOSE = 1e-6
 """How far a completed run may be off what its motion keeps, relatively: what is promised of the
 outcome.
 """
-
-
-def thrown(fields: dict[str, Any]) -> dict[str, Any]:
-    """Give a launch across a gap the velocity with which its lowest point moves by the slip."""
-    launch = dict(fields["launch"])
-    if not launch.get("gap"):
-        return fields
-    gap = launch.pop("gap")
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", category=tt.Implausible)
-        try:
-            velocity = tt.Problem(**fields | {"launch": launch}).start().velocity
-        except TippetopError:
-            return fields
-    del launch["slip"]
-    return fields | {"launch": launch | {"gap": gap, "velocity": list(map(float, velocity))}}
 
 
 def hostile(random: np.random.Generator) -> dict[str, Any]:
