@@ -73,12 +73,19 @@ def test_nothing_damaged_is_read_and_lost_results_are_computed_again(tmp_path, m
     names = ["is_done", *SWEPT]
     xr.testing.assert_identical(read_sweep(path, decode=False)[names], truth[names])
     files = sorted(file for file in path.rglob("*") if file.is_file() and file.name != ".lock")
-    sizes = np.array([file.stat().st_size for file in files])
-    refused = repaired = 0
-    for _ in range(DAMAGES):
-        # Any file as likely as any other, or any byte.
+
+    def is_result(file):
+        place = file.relative_to(path).parts
+        return place[0] in names and place[1] == "c"
+
+    refused = 0
+    for attempt in range(DAMAGES):
+        # One of the results and one of the other files in turn; any of them as likely as any
+        # other, or any byte.
+        some = [file for file in files if is_result(file) == (attempt % 2 == 0)]
+        sizes = np.array([file.stat().st_size for file in some])
         file = random.choice(
-            files, p=random.choice([sizes / sizes.sum(), np.full(len(files), 1 / len(files))])
+            some, p=random.choice([sizes / sizes.sum(), np.full(len(some), 1 / len(some))])
         )
         data, place = file.read_bytes(), file.relative_to(path).parts
         damage = random.choice([flip, cut, blank, lose])(data, random)
@@ -97,10 +104,9 @@ def test_nothing_damaged_is_read_and_lost_results_are_computed_again(tmp_path, m
             done = found["is_done"]
             assert found.where(done).identical(truth[names].where(done)), where
             assert bool(done.all()) or place[:2] == ("is_done", "c"), where
-        if place[0] in names and place[1] == "c":
+        if is_result(file):
             file.unlink(missing_ok=True)
             fill(Store.resume(path), workers=1)
-            repaired += 1
             assert file.is_file(), where
         else:
             if place[0] == "zarr.json" or place[1] == "c":
@@ -108,9 +114,7 @@ def test_nothing_damaged_is_read_and_lost_results_are_computed_again(tmp_path, m
                     read_sweep(path)
             file.write_bytes(data)
         xr.testing.assert_identical(read_sweep(path, decode=False)[names], truth[names])
-    # Damage of both kinds was among them.
-    assert refused >= DAMAGES // 4
-    assert repaired >= DAMAGES // 4
+    assert refused >= DAMAGES // 4, "hardly any damage was noticed"
 
 
 @pytest.mark.parametrize(
