@@ -288,6 +288,18 @@ def test_a_cell_without_slope_and_air_settles_as_its_run():
         assert not bool(swept["is_settled"][1])
 
 
+@pytest.mark.parametrize("name", ["table.slope", "air.axial_linear"])
+def test_runs_that_end_where_they_are_held_for_good_have_neither_slope_nor_air(name):
+    with pytest.raises(tt.InvalidInput, match=f"settled.*{name} is swept"):
+        tt.sweep(tt.presets.report_problem(), {name: [0.0, 1e-8]}, duration=1.0, settled=1e-3)
+
+
+def test_air_beside_a_sharp_tip_alone_is_not_estimated():
+    tip = tt.Body(mass=0.02, shape=tt.Sphere(radius=0.0, center=-0.02), I1=1e-5, I3=1e-6)
+    with pytest.raises(tt.InvalidInput, match="sharp tips alone"):
+        tt.Air.estimated(tip, spin=100.0)
+
+
 def test_a_slope_is_told_of_what_still_moves_on_it():
     moving = tt.presets.report_problem().replace({"table.slope": 0.05})
     assert "no spin on it is steady" in str(tt.describe(tt.simulate(moving, duration=0.2)))

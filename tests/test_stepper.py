@@ -111,3 +111,11 @@ def test_a_reset_begins_anew_with_the_same_or_another_launch():
 def test_what_is_no_step_is_refused(arguments, sentence):
     with pytest.raises(tt.InvalidInput, match=sentence):
         tt.Stepper(report_problem()).step(**arguments)
+
+
+def test_events_of_a_push_have_the_time_of_the_push():
+    stepper = tt.Stepper(tt.presets.report_problem())
+    stepper.step(0.1)
+    pushed = stepper.step(0.01, nudge=(0.0, 0.0, -0.01))
+    assert pushed.events
+    assert min(time for time, _ in pushed.events) == pytest.approx(0.1)

@@ -1,5 +1,6 @@
 """A run in steps of one's own, for learning environments and controllers: `Stepper`."""
 
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -168,8 +169,9 @@ class Stepper:
         torque = _vector("twist", twist) / units.angular_momentum
         velocity = add(state.velocity, tuple(impulse / self._launch.top.mass))
         self._state = state._replace(velocity=velocity, momentum=add(state.momentum, tuple(torque)))
-        self._next = self._launch.automaton.launch(self._state)
-        self._state = self._next.state
+        follows = self._launch.automaton.launch(self._state)
+        events = tuple(replace(event, time=self._time) for event in follows.events)
+        self._next, self._state = Transition(events, follows.next, follows.state), follows.state
 
     def _continued(self, mode: Mode) -> Transition:
         """Return how the next step begins after one that ended in a mode."""
@@ -177,7 +179,8 @@ class Stepper:
             return Transition((), mode, self._state)
         if isinstance(mode, Flight):
             return Transition((), Flight(mode.top, Start.AIRBORNE), self._state)
-        return self._launch.automaton.launch(self._state)
+        follows = self._launch.automaton.launch(self._state)
+        return Transition((), follows.next, follows.state)  # its events have been told
 
     def _recorder(self, end: float) -> Recorder:
         """Return a recorder that goes on from where the last one ended, with a sample at `end`."""

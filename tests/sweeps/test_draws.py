@@ -49,6 +49,11 @@ def test_draws_follow_their_distribution(entry, distribution):
     assert below == pytest.approx(distribution.cdf(levels), abs=0.011)
 
 
+def test_a_unit_of_another_kind_is_refused_by_the_parameter():
+    with pytest.raises(tt.InvalidInput, match="launch.spin.loc: 1500 mm is a length"):
+        values_of({SPIN: {"distribution": "norm", "loc": "1500 mm"}}, count=3)
+
+
 def test_fields_are_independent_and_follow_the_seed():
     table = {SPIN: stats.norm(100.0, 10.0), MU: stats.norm(0.3, 0.01)}
     found = values_of(table, count=20_000)

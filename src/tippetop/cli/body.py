@@ -153,7 +153,7 @@ def body(
         names = {kind: str(path) for kind, path in files.items()}
         show_json({**summary, "files": names, "not_mapped": not_mapped})
     else:
-        show(*_sentences(summary), *map(escape, not_mapped), files=paths)
+        show(*_sentences(summary, upside_down), *map(escape, not_mapped), files=paths)
     if not as_toml and summary["trouble"]:
         raise typer.Exit(2)
 
@@ -323,21 +323,27 @@ def _write(
     return [path], []
 
 
-def _sentences(summary: dict[str, Any]) -> Iterator[Any]:
+def _sentences(summary: dict[str, Any], is_turned: bool) -> Iterator[Any]:
     from rich.markup import escape  # noqa: PLC0415 - slow to import
 
     over = summary["upside_down"]
     if over["group"]:
         stands = summary["surfaces"][0]["kind"]
+        turning = (
+            "Leave --upside-down out to have it as drawn."
+            if is_turned
+            else "--upside-down turns it over."
+        )
+        placed = "turned over" if is_turned else "drawn"
         stem_down = (
-            "It is drawn with its ball above: as drawn it stands on"
+            f"It is {placed} with its ball above: as {placed} it stands on"
             f" {'an' if stands[0] in 'aeo' else 'a'} {stands}."
             if not summary["group"] or _radius_above(summary)
             else "It stands on a ball at either end."
         )
         yield (
             f"[bold]Upside down: group {over['group']}[/]: {over['group_description']}."
-            f" {stem_down} --upside-down turns it over."
+            f" {stem_down} {turning}"
         )
     if not summary["group"] and not over["group"]:
         yield (

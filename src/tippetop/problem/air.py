@@ -7,7 +7,7 @@ from tippetop.mechanics.field import Resistance
 from tippetop.mechanics.surfaces.hull import each_surface, is_edge
 from tippetop.mechanics.vectors import Scalar
 from tippetop.problem.bodies import Body
-from tippetop.support.errors import InvalidInput, is_number, require
+from tippetop.support.errors import Described, InvalidInput, is_number, require
 from tippetop.support.units import number_in
 from tippetop.support.validation import NotNegative, Part, Quantity
 
@@ -164,6 +164,12 @@ class Air(Part):
         surfaces = each_surface(body.surface)
         is_disk = any(is_edge(surface) for surface in surfaces)
         radius = max(_widest(surface) for surface in surfaces)
+        if not radius > 0.0:
+            raise InvalidInput(
+                "body",
+                Described("one of sharp tips alone"),
+                "one with a surface of some size, beside which the air moves",
+            )
         reynolds = rate * radius**2 * rho / eta
         limit = LAMINAR_DISK if is_disk else LAMINAR_SPHERE
         if reynolds > limit:

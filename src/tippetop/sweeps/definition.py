@@ -148,6 +148,15 @@ class Sweep(Part):
         require_recordable(top_of(self.problem))
         if self.settled is not None:
             require_jellett(top_of(self.problem))
+            for name in self.grid.fields:
+                if name.startswith(("table.", "air.")):
+                    raise InvalidInput(
+                        "settled",
+                        self.settled,
+                        "",
+                        f"holds where Jellett's integral does, and {name} is swept",
+                        "omit it",
+                    )
         with _only_refusals():
             cells_of(self.problem, self.grid.values(np.arange(1)))
         return self

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_serializer, model_validator
 
 from tippetop.integrators.base import Array
-from tippetop.support.errors import MISSING, Described, InvalidInput
+from tippetop.support.errors import MISSING, Described, InvalidInput, within_part
 from tippetop.support.suggestions import UNKNOWN
 from tippetop.support.validation import Number, Part, Whole
 from tippetop.sweeps.axes import Count, Entry, Flat, Spacing, between, in_si_of, listed
@@ -123,8 +123,14 @@ class DrawnColumn(Column):
         numbers = dict(table)
         name = numbers.pop("distribution")
         # A number with a unit is a value of the field only where it is a location or a scale.
-        values = {key: in_si_of(field, numbers[key]) for key in ("loc", "scale") if key in numbers}
-        return cls.written(field, {"distribution": name, "parameters": numbers | values})
+        for key in ("loc", "scale"):
+            if key not in numbers:
+                continue
+            try:
+                numbers[key] = in_si_of(field, numbers[key])
+            except InvalidInput as error:
+                raise within_part(error, f"{field}.{key}") from None
+        return cls.written(field, {"distribution": name, "parameters": numbers})
 
     @model_validator(mode="after")
     def _has_quantiles(self) -> Self:

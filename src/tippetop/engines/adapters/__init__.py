@@ -58,7 +58,7 @@ def _adapter_in(path: str) -> Adapter:
     module = module_from_spec(specification)
     try:
         specification.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise _failure(path, error) from error
     classes = [
         one
@@ -83,7 +83,7 @@ def _adapter_in(path: str) -> Adapter:
         if not made.settings or not all(isinstance(one, Setting) for one in made.settings):
             raise TypeError("settings are no tuple of tippetop.engines.adapters.base.Setting")
         refusals(made, CASES)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise _failure(path, error) from error
     for optional in ("package", "module"):
         if not hasattr(made, optional):
@@ -92,7 +92,7 @@ def _adapter_in(path: str) -> Adapter:
     return made
 
 
-def _failure(path: str, error: Exception) -> InvalidInput:
+def _failure(path: str, error: BaseException) -> InvalidInput:
     """Return the refusal of a file that raises an error, with the line where it does."""
     place = error.__traceback__
     lines = []

@@ -38,6 +38,12 @@ class Turned(NamedTuple):
     """Friction of its surfaces."""
 
 
+def _stated(pair: Pair) -> str:
+    """Return the friction of a pair of geoms as a file states it."""
+    numbers = " ".join(f"{number:g}" for number in pair.friction)
+    return f"{numbers} with condim {pair.condim} (as stated, or MuJoCo's defaults)"
+
+
 def turned_body(touching: Sequence[tuple[Geom, Pair]], mass: Mass) -> Turned:
     """Return the body whose surfaces are geoms, with the friction that all of them have.
 
@@ -67,7 +73,7 @@ def turned_body(touching: Sequence[tuple[Geom, Pair]], mass: Mass) -> Turned:
         if unlike != pair:
             raise InvalidInput(
                 f"{geom.field}.friction",
-                Described(f"{unlike}"),
+                Described(_stated(unlike)),
                 "",
                 f"is not that of {first.field}",
                 "write equal friction and condim for all that touches the table",
