@@ -141,6 +141,13 @@ def test_a_bound_on_the_mass_is_kept():
         ({"goal": "nicest"}, "lowest spin"),
         ({"wall": 0.1}, "wall"),
         ({"mass": 1e-5}, "mass"),
+        ({"mass": -1.0}, "mass: -1"),
+        ({"density": 0.0}, "density: 0"),
+        ({"wall": "1 s"}, "wall: 1 s is a time"),
+        ({"stem": -1e-3}, "stem: -0.001"),
+        ({"goal": "fastest", "spin": -5.0}, "spin: -5"),
+        ({"tilt": 0.0}, "tilt: 0"),
+        ({"body": "x"}, "body: 'x'"),
     ],
 )
 def test_what_cannot_be_improved_is_refused(arguments, sentence):

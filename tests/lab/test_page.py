@@ -375,7 +375,7 @@ def link_of(body: tt.Body) -> str:
 @pytest.mark.parametrize(
     ("body", "launch", "said"),
     [
-        (tt.presets.COIN, "launch.spin=0&launch.tilt=0.5", "Lies flat after"),
+        (tt.presets.COIN, "launch.spin=0&launch.tilt=0.5", "Lies down on its face"),
         (
             tt.presets.HURRICANE_BALLS,
             "launch.spin=60&launch.tilt=0.3",

@@ -50,7 +50,7 @@ def test_draws_follow_their_distribution(entry, distribution):
 
 
 def test_a_unit_of_another_kind_is_refused_by_the_parameter():
-    with pytest.raises(tt.InvalidInput, match="launch.spin.loc: 1500 mm is a length"):
+    with pytest.raises(tt.InvalidInput, match=r"launch\.spin\.loc: 1500 mm is a length"):
         values_of({SPIN: {"distribution": "norm", "loc": "1500 mm"}}, count=3)
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from scipy.optimize import brentq
@@ -113,9 +113,12 @@ class ImprovedTop:
 
     def __str__(self) -> str:
         lengths = ", ".join(f"{name} {1e3 * size:.3g} mm" for name, size in self.sizes.items())
-        before = f"{self.before:.4g} rad/s" if math.isfinite(self.before) else "no spin"
+        spin, before = (
+            f"{number:.4g} rad/s" if math.isfinite(number) else "no spin that was tried"
+            for number in (self.spin, self.before)
+        )
         return (
-            f"{self.goal}: turns over and stands from {self.spin:.4g} rad/s (before: {before})\n"
+            f"{self.goal}: turns over and stands from {spin} (before: {before})\n"
             f"{lengths}; mass {1e3 * self.body.mass:.3g} g"
         )
 
@@ -197,10 +200,18 @@ def improve(
         raise not_one_of("goal", goal, GOALS)
     if not is_number(trials) or trials < 0 or trials != int(trials):
         raise InvalidInput("trials", trials, "a whole number, 0 or more")
+    if not isinstance(body, (Body, Workpiece)):
+        raise InvalidInput("body", body, "a Body or a Workpiece, such as presets.REPORT")
+    density, wall = _size("density", density, "kg m-3"), _size("wall", wall, "m")
+    stem, gravity = _size("stem", stem, "m"), _size("gravity", gravity, "m s-2")
+    mass = None if mass is None else _size("mass", mass, "kg")
+    radius = None if radius is None else _size("radius", radius, "m")
+    spin = None if spin is None else _size("spin", spin, "rad s-1")
+    tilt = _size("tilt", tilt, "rad")
     law = ContensouFriction(mu=0.3, patch_radius=5e-4) if friction is None else friction
     start = Body.turned(body, whole=whole) if isinstance(body, Workpiece) else body
     _require_top(start, gravity, tilt)
-    size = start.shapes[0].surface.size if radius is None else number_in("radius", radius, "m")
+    size = start.shapes[0].surface.size if radius is None else radius
     problem = Problem(body=start, friction=law, launch=Launch(tilt=tilt, spin=1.0), gravity=gravity)
     if sticks(top_of(problem)):
         raise InvalidInput(
@@ -216,7 +227,7 @@ def improve(
     before = least_standing_spin(problem)
     if goal != "lowest spin":
         least = trial.least_spin(proposed[0]) if spin is None else math.nan
-        trial.spin = FASTER * least if spin is None else float(number_in("spin", spin, "rad s-1"))
+        trial.spin = FASTER * least if spin is None else spin
     if goal == "stands longest":
         by_theory = family.improved(proposed[0], lambda at: -family.standing_time(at, trial.spin))
         proposed.insert(0, by_theory)
@@ -232,6 +243,14 @@ def improve(
         before,
         {"radius": family.radius, **dict(zip(("wall", "tip", "stem"), best.tolist(), strict=True))},
     )
+
+
+def _size(name: str, value: Any, unit: str) -> float:
+    """Return a number in SI; raise `InvalidInput` unless it is greater than 0."""
+    number = number_in(name, value, unit)
+    if not (is_number(number) and number > 0.0):
+        raise InvalidInput(name, value, "a number greater than 0")
+    return float(number)
 
 
 def _require_top(body: Body, gravity: float, tilt: float) -> None:

@@ -102,8 +102,8 @@ class OuterField(NamedTuple):
             part if part is not None and any(part.numbers) else None
             for part in (self.axial, self.transverse, self.drag)
         )
-        left = OuterField(slope, axial, transverse, drag)
-        return None if left == OuterField() else left
+        acting = OuterField(slope, axial, transverse, drag)
+        return None if acting == OuterField() else acting
 
     def couple(self, axis: Vector, spin: Scalar, turning: Vector) -> Vector:
         """Return the couple of air, N m.

@@ -85,8 +85,10 @@ def _listed(names: Iterable[str]) -> str:
     groups = []
     for part, group in groupby(names, lambda name: name.partition(".")[0]):
         inside = [name.removeprefix(f"{part}.") for name in group]
-        whole = part if inside == [part] else f"{part}.{inside[0]}"
-        groups.append(whole if len(inside) == 1 else f"{part}.{{{', '.join(inside)}}}")
+        if len(inside) > 1:
+            groups.append(f"{part}.{{{', '.join(inside)}}}")
+        else:
+            groups.append(part if inside == [part] else f"{part}.{inside[0]}")
     return ", ".join(groups)
 
 
