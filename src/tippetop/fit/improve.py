@@ -91,7 +91,7 @@ class ImprovedTop:
     >>> body, none = tt.Body.turned(piece), float("inf")
     >>> top = tt.ImprovedTop(body, piece, "lowest spin", spin=150.0, before=none, sizes=sizes)
     >>> print(str(top).splitlines()[0])
-    lowest spin: turns over and stands from 150 rad/s (before: no spin)
+    lowest spin: turns over and stands from 150 rad/s (before: no spin that was tried)
     """
 
     body: Body
