@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from scipy.optimize import brentq
@@ -27,7 +27,7 @@ from tippetop.problem.shapes import Sphere
 from tippetop.run import simulate
 from tippetop.support.errors import Described, InvalidInput, is_number
 from tippetop.support.suggestions import not_one_of
-from tippetop.support.units import number_in
+from tippetop.support.units import positive_in
 from tippetop.theory.advice import standing_spin
 from tippetop.theory.prospects import Prospects, prospects
 from tippetop.theory.requirements import sticks
@@ -202,12 +202,12 @@ def improve(
         raise InvalidInput("trials", trials, "a whole number, 0 or more")
     if not isinstance(body, (Body, Workpiece)):
         raise InvalidInput("body", body, "a Body or a Workpiece, such as presets.REPORT")
-    density, wall = _size("density", density, "kg m-3"), _size("wall", wall, "m")
-    stem, gravity = _size("stem", stem, "m"), _size("gravity", gravity, "m s-2")
-    mass = None if mass is None else _size("mass", mass, "kg")
-    radius = None if radius is None else _size("radius", radius, "m")
-    spin = None if spin is None else _size("spin", spin, "rad s-1")
-    tilt = _size("tilt", tilt, "rad")
+    density, wall = positive_in("density", density, "kg m-3"), positive_in("wall", wall, "m")
+    stem, gravity = positive_in("stem", stem, "m"), positive_in("gravity", gravity, "m s-2")
+    mass = None if mass is None else positive_in("mass", mass, "kg")
+    radius = None if radius is None else positive_in("radius", radius, "m")
+    spin = None if spin is None else positive_in("spin", spin, "rad s-1")
+    tilt = positive_in("tilt", tilt, "rad")
     law = ContensouFriction(mu=0.3, patch_radius=5e-4) if friction is None else friction
     start = Body.turned(body, whole=whole) if isinstance(body, Workpiece) else body
     _require_top(start, gravity, tilt)
@@ -243,14 +243,6 @@ def improve(
         before,
         {"radius": family.radius, **dict(zip(("wall", "tip", "stem"), best.tolist(), strict=True))},
     )
-
-
-def _size(name: str, value: Any, unit: str) -> float:
-    """Return a number in SI; raise `InvalidInput` unless it is greater than 0."""
-    number = number_in(name, value, unit)
-    if not (is_number(number) and number > 0.0):
-        raise InvalidInput(name, value, "a number greater than 0")
-    return float(number)
 
 
 def _require_top(body: Body, gravity: float, tilt: float) -> None:

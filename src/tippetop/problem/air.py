@@ -8,7 +8,7 @@ from tippetop.mechanics.surfaces.hull import each_surface, is_edge
 from tippetop.mechanics.vectors import Scalar
 from tippetop.problem.bodies import Body
 from tippetop.support.errors import Described, InvalidInput, is_number, require
-from tippetop.support.units import number_in
+from tippetop.support.units import number_in, positive_in
 from tippetop.support.validation import NotNegative, Part, Quantity
 
 # translate: skip
@@ -158,9 +158,12 @@ class Air(Part):
         '5e-06 N m'
         """
         require("body", body, Body, "a Body, such as presets.REPORT")
-        rate = abs(_positive("spin", spin, "rad s-1", signed=True))
-        rho = _positive("density", density, "kg m-3")
-        eta = _positive("viscosity", viscosity, "Pa s")
+        rate = number_in("spin", spin, "rad s-1")
+        if not (is_number(rate) and rate != 0.0):
+            raise InvalidInput("spin", spin, "a number other than 0")
+        rate = abs(float(rate))
+        rho = positive_in("density", density, "kg m-3")
+        eta = positive_in("viscosity", viscosity, "Pa s")
         surfaces = each_surface(body.surface)
         is_disk = any(is_edge(surface) for surface in surfaces)
         radius = max(_widest(surface) for surface in surfaces)
@@ -212,17 +215,6 @@ def _resistance(linear: Scalar, quadratic: Scalar) -> Resistance | None:
 def _is_none(number: Scalar) -> bool:
     """Return whether a coefficient is the number zero, and no array."""
     return isinstance(number, (int, float)) and not number
-
-
-# translate: skip
-def _positive(name: str, value: Any, unit: str, *, signed: bool = False) -> float:
-    """Return a number in SI; raise `InvalidInput` unless it is positive, or not 0 if `signed`."""
-    number = number_in(name, value, unit)
-    if not (is_number(number) and (number > 0.0 or (signed and number != 0.0))):
-        raise InvalidInput(
-            name, value, "a number other than 0" if signed else "a number greater than 0"
-        )
-    return float(number)
 
 
 # translate: skip

@@ -155,6 +155,14 @@ def number_in(field: str, value: Any, units: str) -> Any:
         raise within_part(error, field) from None
 
 
+def positive_in(field: str, value: Any, units: str) -> float:
+    """Return a field's number in an SI unit; raise `InvalidInput` unless it is greater than 0."""
+    number = number_in(field, value, units)
+    if not (is_number(number) and number > 0.0):
+        raise InvalidInput(field, value, "a number greater than 0")
+    return float(number)
+
+
 def converted(number: Any, unit: Unit) -> Any:
     """Return a number of a unit in SI; other values unchanged."""
     return number * unit.over / unit.under if is_number(number) else number
