@@ -14,7 +14,14 @@ import tippetop as tt
 from tippetop.contact.mode import EventKind
 from tippetop.engines.families import FAMILIES, SHARES, drawn_problem
 from tippetop.support.errors import FileTrouble, InvalidInput, Unavailable, is_number, is_whole
-from tippetop.support.files import in_words, named, path_of, refuse_overwriting, require_ending
+from tippetop.support.files import (
+    in_words,
+    named,
+    path_of,
+    refuse_overwriting,
+    require_ending,
+    written_beside,
+)
 from tippetop.support.processes import Job, processors, shared
 from tippetop.support.units import number_in
 
@@ -124,7 +131,8 @@ def write_dataset(
             beside.rename(place)
         finally:
             shutil.rmtree(beside, ignore_errors=True)
-        card.write_text(_card(count, seed, times), encoding="utf-8")
+    with written_beside(card, overwrite) as unfinished:
+        unfinished.write_text(_card(count, seed, times), encoding="utf-8")
     return place
 
 
