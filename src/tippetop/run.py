@@ -28,6 +28,7 @@ from tippetop.results.run_metrics import RunMetrics
 from tippetop.results.run_solution import RunSolution
 from tippetop.results.sample_times import sample_times
 from tippetop.results.samples import event_in_si
+from tippetop.results.sampling import DEFAULT_SAMPLES
 from tippetop.support.errors import InvalidInput, require
 from tippetop.support.units import number_in
 from tippetop.support.validation import require_callback
@@ -38,7 +39,7 @@ def simulate(
     problem: Problem,
     duration: float,
     *,
-    samples: int = 2001,
+    samples: int = DEFAULT_SAMPLES,
     times: ArrayLike | None = None,
     events: Mapping[str, Value] | None = None,
     until: str | Value | None = None,
@@ -57,7 +58,7 @@ def simulate(
     problem: Problem,
     duration: float,
     *,
-    samples: int = 2001,
+    samples: int = DEFAULT_SAMPLES,
     times: ArrayLike | None = None,
     events: Mapping[str, Value] | None = None,
     until: str | Value | None = None,
@@ -76,7 +77,7 @@ def simulate(
     problem: Problem,
     duration: float,
     *,
-    samples: int = 2001,
+    samples: int = DEFAULT_SAMPLES,
     times: ArrayLike | None = None,
     events: Mapping[str, Value] | None = None,
     until: str | Value | None = None,

@@ -22,6 +22,7 @@ from tippetop.cli.options import (
 )
 from tippetop.cli.terminal import facts, progress_bar, show, show_json
 from tippetop.problem.problem import top_of
+from tippetop.results.sampling import DEFAULT_SAMPLES, sample_count
 from tippetop.results.told_times import digits_left
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import place_for, refuse_ending_of_others, require_ending
@@ -29,7 +30,6 @@ from tippetop.support.files import place_for, refuse_ending_of_others, require_e
 if TYPE_CHECKING:
     import xarray as xr
 
-DEFAULT_SAMPLES = 2001
 FILMS = {"mp4", "gif"}
 MOVING = {"glb", "html", *FILMS}
 """Kinds of files that show the motion, which needs enough samples."""
@@ -91,7 +91,9 @@ def simulate(
     ] = "20",
     samples: Annotated[
         int | None,
-        number_option(int, "Number of samples; by default 2001, or as many as a film needs."),
+        number_option(
+            int, f"Number of samples; by default {DEFAULT_SAMPLES}, or as many as a film needs."
+        ),
     ] = None,
     integrator: Annotated[
         str | None,
@@ -182,8 +184,6 @@ def _sample_count(problem: "tt.Problem", duration: float, requested: Iterable[st
     """Return the number of samples that the requested files need, at least the default."""
     if not (MOVING & set(requested) and math.isfinite(duration)):
         return DEFAULT_SAMPLES
-    from tippetop.results.sampling import sample_count  # noqa: PLC0415 - slow to import
-
     return max(DEFAULT_SAMPLES, sample_count(problem, duration))
 
 

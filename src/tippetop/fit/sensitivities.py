@@ -15,6 +15,7 @@ from tippetop.mechanics.top import natural_units
 from tippetop.problem.problem import Problem, require_problem, top_of
 from tippetop.results.catalogue import DERIVED, LISTED, METRICS, SAMPLED, Variable
 from tippetop.results.sample_times import sample_times
+from tippetop.results.sampling import DEFAULT_SAMPLES
 from tippetop.support.units import number_in
 from tippetop.support.validation import require_names
 
@@ -31,7 +32,7 @@ def sensitivities(
     duration: float,
     vary: str | Sequence[str],
     *,
-    samples: int = 2001,
+    samples: int = DEFAULT_SAMPLES,
     times: ArrayLike | None = None,
 ) -> xr.Dataset:
     """Return the derivatives of a run with respect to fields of its problem.

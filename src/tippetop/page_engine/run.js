@@ -491,7 +491,7 @@ class Run {
   }
 
   /** Every variable of the catalogue's SAMPLED at some times, s, or at so many from start to end. */
-  track(when = 2001) {
+  track(when = m.DEFAULT_SAMPLES) {
     const times = typeof when === "number" ? this.grid(when) : Float64Array.from(when);
     const track = { time: times, mode: [] };
     for (const [name, variable] of Object.entries(CATALOGUE.sampled)) {

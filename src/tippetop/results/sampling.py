@@ -1,9 +1,12 @@
-"""Number of samples with which a run can be played at any speed."""
+"""Numbers of samples of a run: the default, and how many let it be played at any speed."""
 
 import math
 
 from tippetop.mechanics.vectors import length
 from tippetop.problem.problem import Problem, top_of
+
+DEFAULT_SAMPLES = 2001
+"""Number of samples of a run where nobody says how many: enough for curves in figures."""
 
 TURN_PER_SAMPLE = 0.6
 """Largest turn of the body between samples, rad: above half a turn the sense of rotation is lost,

@@ -48,7 +48,7 @@ happens.
 """
 LEAST_TOLERANCE = float(np.finfo(float).eps)
 
-DEFAULT_SAMPLES = 201
+DEFAULT_KEPT_SAMPLES = 201
 """Number of samples that are kept of a run if nobody says how many."""
 
 MOST_COMPONENTS = 3
@@ -190,7 +190,7 @@ class Sweep(Part):
         """Times of the samples that are kept, s, shape (k,); none if nothing is kept."""
         if not self.keep:
             return np.empty(0)
-        return sample_times(self.duration, self.samples or DEFAULT_SAMPLES, self.times)
+        return sample_times(self.duration, self.samples or DEFAULT_KEPT_SAMPLES, self.times)
 
     @property
     def dimensions(self) -> tuple[str, ...]:
