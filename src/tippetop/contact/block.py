@@ -81,9 +81,12 @@ class ModeSteps:
         return np.ascontiguousarray(self.terms[:, :, 0].T)
 
 
-def nearer_pole(axis: Array) -> Array:
-    """Return the pole nearer to the axis in each step, shape (k,), by n_z, shape (m, k)."""
-    return np.where(axis.min(axis=0) + axis.max(axis=0) >= 0.0, 1.0, -1.0)
+def nearer_pole(n_z: Array) -> Array:
+    """Return +1 or -1, the pole to which the axis comes nearest within each step, shape (k,).
+
+    `n_z` are the axis's vertical components at m instants of each step, shape (m, k).
+    """
+    return np.where(n_z.min(axis=0) + n_z.max(axis=0) >= 0.0, 1.0, -1.0)
 
 
 @dataclass(frozen=True)

@@ -70,10 +70,10 @@ def series_source(recorded: Recorded, order: int) -> str:
 
 
 def with_choices(recorded: Recorded) -> Recorded:
-    """Return a recorded function that returns the margins of its choices, too.
+    """Return a recorded function with one more output for every `<` and `abs` in it: its margin.
 
-    A margin is positive as long as `<` or `abs` choose as they do where the coefficients begin:
-    beyond its zero these are those of another function.
+    The margin is positive while the choice stays the one made where the coefficients begin; beyond
+    its zero the coefficients are invalid.
     """
     moving = _moving(recorded)
     margins = dict[int, graph.Node]()

@@ -67,7 +67,7 @@ class Zone(NamedTuple):
 
 
 class ConvexHull(NamedTuple):
-    """Convex hull of a body."""
+    """Surfaces of revolution on which a turned body can stand, each with its range of tilts."""
 
     zones: tuple[Zone, ...]
     """The surfaces on which the body stands, by tilt."""

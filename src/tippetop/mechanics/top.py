@@ -64,7 +64,8 @@ class RigidBody(NamedTuple):
 
 
 class Top(NamedTuple):
-    """A contact of a body: one of its surfaces, and the branch of the law that holds there.
+    """One contact of a body: the body, which of its surfaces touches, and which branch of the law
+    holds.
 
     It has what the equations of motion need: the numbers of the body, the surface and the law.
     `RigidBody.contacts` and `RigidBody.lowest_at` make contacts of the same body, and

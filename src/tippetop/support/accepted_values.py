@@ -56,7 +56,10 @@ def refusal_of(detail: ErrorDetails, fields: Mapping[str, FieldInfo]) -> Invalid
 
 
 def degrees_hint(value: Any, accepted: str) -> str:
-    """Return how to write an angle in degrees; "" unless the value is too large in radians."""
+    """Return how to write an angle in degrees.
+
+    "" unless the accepted values end at pi and the value lies between pi and 180.
+    """
     angle = accepted.endswith("at most pi") and isinstance(value, float | int)
     if angle and math.pi < value <= 180.0:
         degrees = short(value)

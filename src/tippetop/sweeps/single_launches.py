@@ -29,9 +29,11 @@ _LOG = logging.getLogger(__name__)
 
 
 def is_alone(launches: Launches) -> bool:
-    """Return whether steps of many launches at once do not serve: they know nothing of bodies of
-    several surfaces, of slopes and air, and of users' rules, and do not see where a law chooses by
-    the numbers.
+    """Return whether every launch of a sweep must be followed by itself.
+
+    The steps of lanes cannot treat several surfaces, a slope, air, users' rules, or a law that
+    chooses between formulas. Single launches leave the lanes later too: in `transitions`, and
+    where a lane's motion becomes stiff (`lane_executor`).
     """
     example = launches.kind.example
     has_built_in_rules = launches.rules is None and not isinstance(example.surface, Hull)

@@ -56,7 +56,7 @@ def advice(
     gravity: float = 9.8,
     tilt: float = 0.1,
 ) -> list[Advice]:
-    """Return the least change of each single size with which a top stands.
+    """Return the least change of each single size with which a top turns over and stands.
 
     `reach` is the largest spin of launches, rad/s. Sizes whose change alone is not enough are
     omitted. `body_with` makes the body with another value of one size, by its name; it raises

@@ -45,7 +45,7 @@ from tippetop.mechanics.contacts.pair_resolver import (
     resolution,
     turning_about,
 )
-from tippetop.mechanics.contacts.slip_onset import Moved, Onset, find_onset, resolve_onset
+from tippetop.mechanics.contacts.slip_onset import Onset, TableResponse, find_onset, resolve_onset
 from tippetop.mechanics.contacts.slip_variables import inner
 from tippetop.mechanics.contacts.system import (
     delassus_matrix,
@@ -164,7 +164,7 @@ def closed_alone(
     return sorted(results, key=_count_of_beginning)
 
 
-def moved_under(normal: float, share: float) -> Moved:
+def moved_under(normal: float, share: float) -> TableResponse:
     """Return what the table does to one contact under a given normal force, and the acceleration,
     as a function of slip and rolling; see `Load`.
     """

@@ -22,8 +22,12 @@ CHOICES = ((True, False), (False, True), (True, True))
 on all the same.
 """
 
-Moved: TypeAlias = Callable[[ContactPoint, Slip | None, Slip | None], tuple[Wrench, Acceleration]]
-"""From slip and rolling, None where they are held, to what the table does, and the acceleration."""
+TableResponse: TypeAlias = Callable[
+    [ContactPoint, Slip | None, Slip | None], tuple[Wrench, Acceleration]
+]
+"""Function from slip and rolling, None where they are held, to the wrench of the table and the
+acceleration of the contact point.
+"""
 
 Motion: TypeAlias = tuple[Slip | None, Slip | None, Wrench, Acceleration]
 """Slip and rolling, or their directions, None where they are held; and what comes of them."""
@@ -50,7 +54,7 @@ def find_onset(
     *,
     held: Wrench | None = None,
     near: Sequence[Slip] = (),
-    moved: Moved = forces_and_accelerations,
+    moved: TableResponse = forces_and_accelerations,
 ) -> Onset:
     """Return the directions in which slip, or rolling, or both, begin, and the forces.
 
@@ -126,7 +130,7 @@ def resolve_onset(
     slip: Slip | None,
     rolling: Slip | None,
     *,
-    moved: Moved = forces_and_accelerations,
+    moved: TableResponse = forces_and_accelerations,
 ) -> tuple[Onset, tuple[bool, bool]]:
     """Return how a contact goes on after slip or rolling has ended, and which of them begin again.
 

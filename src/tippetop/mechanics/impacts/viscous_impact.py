@@ -51,7 +51,7 @@ class ViscousImpact:
     body: StruckBody
     """The body at the start of the impact."""
     mu: float
-    modes: tuple[PrincipalDirection, PrincipalDirection]
+    directions: tuple[PrincipalDirection, PrincipalDirection]
 
     @classmethod
     def of(cls, body: StruckBody, law: ViscousLaw) -> "ViscousImpact":
@@ -123,7 +123,7 @@ class ViscousImpact:
         """Return the impulse when the normal impulse is p."""
         east = north = 0.0
         work = p * (self.body.before[2] + 0.5 * p * self.body.contacts.response[2][2])
-        for (x, y), stiffness, coupling, slip in self.modes:
+        for (x, y), stiffness, coupling, slip in self.directions:
             phi_1, phi_2, phi_3 = phis(self.mu * stiffness * p)
             along = -self.mu * p * (slip * phi_1 + coupling * p * phi_2)
             east, north = east + along * x, north + along * y
