@@ -95,6 +95,56 @@ def test_a_pushed_run_goes_on_as_its_state_launched(
     assert found["metrics"]["final_tilt"] == pytest.approx(float(run["final_tilt"]), abs=1e-7)
 
 
+@pytest.mark.parametrize("problem", [VISCOUS, DRY, VISCOUS.replace({"table.slope": 0.2})])
+def test_a_lifted_table_goes_on_as_its_state_launched_on_the_slope(problem: tt.Problem) -> None:
+    at, end, slope = 1.5, 3.0, 0.1
+    later = np.linspace(0.01, end - at, 40)
+    push = {"time": at, **REST, "slope": slope}
+    found = followed(problem, [push], at + later, end)
+    begun = begun_at(problem, at).replace({"table.slope": slope})
+    run, solution = tt.simulate(begun, end - at, dense=True)
+    assert run.attrs["status"] == found["status"]["name"] == "completed"
+    expected = solution.sample(later)
+    most = {"tilt": 1e-7, "spin": 1e-5, "height": 1e-8, "normal_force": 1e-6}
+    for name, apart in most.items():
+        np.testing.assert_allclose(found["track"][name], expected[name], rtol=0, atol=apart)
+    assert found["metrics"]["final_tilt"] == pytest.approx(float(run["final_tilt"]), abs=1e-7)
+    kinds = [event["kind"] for event in found["events"] if event["time"] > at]
+    assert kinds == [str(kind) for kind in run["event_kind"].values[run["event_time"].values > 0.0]]
+    assert "meets_slope" in [clause["name"] for clause in found["account"]]
+
+
+def test_what_happened_before_the_table_is_lifted_stays_as_it_was() -> None:
+    times = np.linspace(0.0, 8.0, 41)
+    grippy = VISCOUS.replace({"friction.mu": 0.9})
+    without = followed(grippy, [], times, 8.0)
+    push = {"time": 7.0, **REST, "slope": 0.25}
+    found = followed(grippy, [push], times, 8.0)
+    before = times < 7.0
+    for name in ("tilt", "x", "energy", "work", "normal_force"):
+        np.testing.assert_allclose(
+            np.array(found["track"][name])[before], np.array(without["track"][name])[before]
+        )
+    for name in ("turnover_time", "min_normal_force"):
+        assert found["metrics"][name] == pytest.approx(without["metrics"][name], rel=1e-6), name
+    # Gravity acts at the centre of mass, whatever its direction.
+    assert found["metrics"]["jellett_change"] < 1e-7
+
+
+def test_a_table_that_is_lifted_turns_about_the_place_of_launch() -> None:
+    at, slope = 1.0, 0.2
+    push = {"time": at, **REST, "slope": slope}
+    found = followed(VISCOUS, [push], [0.0, at, at + 1e-9, 2.0], 2.0)
+    track, weight = found["track"], VISCOUS.body.mass * VISCOUS.gravity
+    start, before, after, end = track["energy"]
+    x, height = track["x"][1], track["height"][1]
+    lifted = weight * (height * math.cos(slope) - x * math.sin(slope) - height)
+    assert after - before == pytest.approx(lifted, abs=1e-9)
+    lost = found["metrics"]["energy_lost"]
+    assert lost == pytest.approx(start + lifted - end, abs=1e-9)
+    assert track["work"][-1] == pytest.approx(-lost, abs=1e-9)
+
+
 def test_a_push_of_nothing_changes_nothing() -> None:
     times = np.linspace(0.0, 8.0, 81)
     without = followed(VISCOUS, [], times, 8.0)
@@ -152,6 +202,7 @@ def test_a_top_that_rolls_slips_once_it_is_pushed() -> None:
         ([{"time": 1.0, "impulse": -1.0, "direction": 0.0}], "push.impulse"),
         ([{"time": 1.0, "impulse": 0.0, "direction": None}], "push.direction"),
         ([{"time": 1.0, **REST, "mu": -1.0}], "friction.mu"),
+        ([{"time": 1.0, **REST, "slope": 1.6}], "table.slope"),
     ],
 )
 def test_pushes_that_are_none_are_refused(pushes: list[dict[str, Any]], field: str) -> None:

@@ -37,17 +37,20 @@ const depth = (mode, y) => [neg(m.gap_at(mode, y))];
 
 // Places of what is summed up along a run, in the order of `RunSums`.
 const SUMS = m.RunSums.fields.length;
-const [TURN, WORK, STRUCK] = ["turn", "work", "struck"].map((name) =>
+const [TURN, WORK, AIR, STRUCK] = ["turn", "work", "air", "struck"].map((name) =>
   m.RunSums.fields.indexOf(name),
 );
+// Those from the work on are energies.
+const ENERGIES = Array.from({ length: SUMS - WORK }, (_, k) => WORK + k);
 
 /**
  * Follow the launch of a problem (as JSON tells it) for a duration, s, at a relative error a step.
  *
  * `pushes` are what is done to the body and the table on the way, in order of time: each has a `time`, s, a horizontal
  * `impulse`, N s, at a point of the axis at one size from the centre of mass, its `direction`, rad, from that into
- * which the axis leans, and the friction coefficient `mu` from then on, null for that which was. The run goes on from
- * the state that it has then; what comes after its end is left out.
+ * which the axis leans, and the friction coefficient `mu` and the table's `slope`, rad, from then on, null for those
+ * which were. The run goes on from the state that it has then, relative to the table, which turns about the place of
+ * launch; what comes after its end is left out.
  */
 export function simulate(
   problem,
@@ -117,7 +120,7 @@ function changedBy(problem, fields, change) {
 function pushesOf(pushes, problem) {
   let before = 0;
   let present = problem;
-  return pushes.map(({ time, impulse, direction, mu = null }) => {
+  return pushes.map(({ time, impulse, direction, mu = null, slope = null }) => {
     requireNumber("push.time", time, time > before, `of seconds greater than ${before}`);
     requireNumber("push.impulse", impulse, impulse >= 0, "at least 0 N s");
     requireNumber("push.direction", direction, true, "in rad");
@@ -126,7 +129,8 @@ function pushesOf(pushes, problem) {
       throw new m.InvalidInput("push.impulse", impulse, "0 where contact.liftoff is not fly");
     before = time;
     if (mu !== null) present = { ...present, friction: { ...present.friction, mu } };
-    return { time, impulse, direction, problem: new m.Problem(present) };
+    if (slope !== null) present = { ...present, table: { ...present.table, slope } };
+    return { time, impulse, direction, mu, slope, problem: new m.Problem(present) };
   });
 }
 
@@ -142,6 +146,7 @@ class Run {
     this.duration = duration;
     this.tolerance = tolerance;
     this.limits = limits;
+    // The natural units of the table that there is.
     this.units = m.natural_units(top);
     this.start = m.natural_state(problem.start(), this.units);
     m.require_limits(duration, this.units.time, ...limits);
@@ -150,12 +155,11 @@ class Run {
     const turn = this.pole * problem.launch.azimuth;
     this.sums = Float64Array.from(m.RunSums.at_launch(turn, 0));
     this.happened = [];
-    // The pushes so far, and the energy that they have given to the body.
     this.pushes = [];
-    this.pushEnergy = 0;
     this.segments = [];
     this.steps = 0;
     this.rolls = false;
+    // The first time at which n_z fell to zero, s.
     this.firstHorizontal = NaN;
     // Whether n_z was positive at the start of a step.
     this.wasAbove = false;
@@ -168,9 +172,10 @@ class Run {
     this.begin(problem, this.start, 0);
   }
 
-  /** Begin a motion on the table of a problem, from a state at a time, in natural units. */
+  /** Begin a motion on the table of a problem, from a state at a time, in the natural units of that table. */
   begin(problem, state, time) {
     const { contact } = problem;
+    this.present = problem;
     this.top = m.natural(m.top_of(problem));
     this.automaton = new m.Automaton(
       this.top,
@@ -228,20 +233,41 @@ class Run {
 
   /** Push the body, and go on with the table of the problem from then on. */
   push(push) {
-    const { units, trajectory } = this;
-    const { time, impulse, direction, problem } = push;
-    const { state } = trajectory;
+    const { impulse, direction, problem } = push;
+    const { state } = this.trajectory;
     this.breach ||= this.breachUntil(m.Status.COMPLETED);
     const azimuth = Math.atan2(state.axis[1], state.axis[0]) + direction;
-    const size = impulse / (units.mass * units.speed);
+    const size = impulse / (this.units.mass * this.units.speed);
     const along = [size * Math.cos(azimuth), size * Math.sin(azimuth), 0];
     const pushed = m.pushed_state(state, along, 1, this.top);
     this.pushes.push(push);
-    this.pushEnergy += m.energy(pushed, this.top) - m.energy(state, this.top);
-    this.begin(problem, pushed, time / units.time);
+    const units = this.change(m.natural_units(m.top_of(problem)));
+    const time = push.time / this.units.time;
+    this.begin(problem, m.natural_state(pushed, units), time);
     const { next } = this.launch;
     if (this.segments.at(-1)?.mode.status === STICKING && next.status !== STICKING)
-      this.happened.push(new m.Event(m.EventKind.SLIP, time / units.time));
+      this.happened.push(new m.Event(m.EventKind.SLIP, time));
+  }
+
+  /** Go over to other natural units, which differ in that of time alone; returns them in those that were. */
+  change(other) {
+    const units = new m.Units(1, 1, other.time / this.units.time);
+    this.units = other;
+    for (const energy of ENERGIES) this.sums[energy] /= units.energy;
+    this.happened = this.happened.map((event) =>
+      replace(event, {
+        time: event.time / units.time,
+        impulse: event.impulse / units.speed,
+        energy_lost: event.energy_lost / units.energy,
+      }),
+    );
+    const { rows } = this.flightRecord;
+    rows.forEach(([start, end, gap], k) => {
+      rows[k] = [start / units.time, end / units.time, gap];
+    });
+    this.leastForce.change(units.force);
+    this.start = m.natural_state(this.start, units);
+    return units;
   }
 
   /** Why a motion that ends with a status cannot be trusted; empty if it can. */
@@ -267,8 +293,7 @@ class Run {
   }
 
   includeSteps(mode, solution) {
-    const segment = new SegmentReader(mode, solution, mode.label);
-    this.segments.push(segment);
+    const segment = this.addSegment(mode, solution, mode.label);
     const readConserved = segment.read(conserved, CONSERVED);
     const watchesForce = mode.touching && !this.flightRecord.rows.length;
     for (let step = 0; step < solution.count; step += 1) {
@@ -276,9 +301,15 @@ class Run {
       this.monitor.check(values[0], values[1], values[2], this.work);
       this.integrate(segment, step);
       if (watchesForce) this.includeForce(segment, step);
-      this.includeAxis(solution, step);
-      if (!mode.touching) this.includeHeight(solution, step);
+      this.includeAxis(segment, step);
+      if (!mode.touching) this.includeHeight(segment, step);
     }
+  }
+
+  addSegment(mode, solution, label) {
+    const segment = new SegmentReader(mode, solution, label, this.top, this.units);
+    this.segments.push(segment);
+    return segment;
   }
 
   /** Add what is integrated along a step. */
@@ -327,33 +358,33 @@ class Run {
   includeForce(segment, step) {
     const { lowestForce, highestForce } = this;
     const bound = lowestForce - BETWEEN_NODES * (highestForce - lowestForce);
-    this.leastForce.include(lowestForce, bound, segment.solution, step, () => segment.force(step));
+    this.leastForce.include(lowestForce, bound, segment, step, () => segment.force(step));
   }
 
   /** Take in the range of n_z in a step, and when it first falls to zero. */
-  includeAxis(solution, step) {
+  includeAxis(segment, step) {
+    const { solution } = segment;
     const start = solution.value(step, AXIS_Z, 0);
     const [low, high] = solution.bounds(step, AXIS_Z);
-    this.leastAxisZ.include(start, low, solution, step, () => reading(solution, step, AXIS_Z));
-    this.mostAxisZ.include(-start, -high, solution, step, () =>
-      reading(solution, step, AXIS_Z, -1),
-    );
+    this.leastAxisZ.include(start, low, segment, step, () => reading(solution, step, AXIS_Z));
+    this.mostAxisZ.include(-start, -high, segment, step, () => reading(solution, step, AXIS_Z, -1));
     if (low <= 0 && (high >= 0 || this.wasAbove) && Number.isNaN(this.firstHorizontal)) {
       const value = reading(solution, step, AXIS_Z);
       // Where one step ends and another begins with a level axis, as in an impact there, no step falls through zero.
       const fallsFromStart = this.wasAbove && start <= 0 && value(PROBES[1]) < 0;
       const terms = solution.coefficients(step, AXIS_Z);
       const part = fallsFromStart ? 0 : m.first_fall(terms, true);
-      this.firstHorizontal = solution.time(step, part);
+      this.firstHorizontal = segment.time(step, part);
     }
     this.wasAbove ||= start > 0;
   }
 
   /** Take in how high the centre of mass is in a step of a flight. */
-  includeHeight(solution, step) {
+  includeHeight(segment, step) {
+    const { solution } = segment;
     const start = solution.value(step, HEIGHT, 0);
     const [, high] = solution.bounds(step, HEIGHT);
-    this.mostHeight.include(-start, -high, solution, step, () =>
+    this.mostHeight.include(-start, -high, segment, step, () =>
       reading(solution, step, HEIGHT, -1),
     );
   }
@@ -382,20 +413,26 @@ class Run {
     }));
     const ends = this.ends(trusted);
     const metrics = m.metrics(ends, this.start, this.top, units);
-    for (const name of ["energy_lost", "energy_lost_sliding"])
-      metrics.set(name, metrics.get(name) + this.pushEnergy * units.energy);
+    if (this.pushes.length) {
+      // What pushes give and what lifts the table is in the difference of energies: the work of the rest is not.
+      const lost = -(this.sums[WORK] + this.sums[AIR]) * units.energy;
+      const given = lost - metrics.get("energy_lost");
+      for (const name of ["energy_lost", "energy_lost_sliding"])
+        metrics.set(name, metrics.get(name) + given);
+    }
     this.metrics = Object.fromEntries(metrics.entries());
     metrics.set("end_time", this.endTime);
-    const peak = [m.highest_seen(ends), this.peakTime() * units.time];
+    const peak = [m.highest_seen(ends), this.peakTime()];
     const flights = this.flights.map(({ start, end }) => [start, end]);
-    const since = this.since(m.settled_band(ends.settled)) * units.time;
-    this.facts = new m.Facts(this.problem, trusted, metrics, peak, since, events, flights);
+    const since = this.since(m.settled_band(ends.settled));
+    this.facts = new m.Facts(this.present, trusted, metrics, peak, since, events, flights);
     if (!this.segments.length) this.addLaunch();
   }
 
   /** What is found of the run in natural units, for `m.metrics`. */
   ends(status) {
     const { state, time } = this.trajectory;
+    const { time: unit } = this.units;
     // Of every step the value at its start is taken in: the end of the last one is missing.
     const lastAxisZ = this.segments.length ? state.axis[2] : NaN;
     this.leastAxisZ.includeValue(lastAxisZ, null);
@@ -413,15 +450,16 @@ class Run {
       sums,
       sums.descent_work(this.top),
       extremes.map((extreme) => extreme.refined()),
-      [this.firstHorizontal, settled, this.arrival(m.settled_band(settled))],
+      [this.firstHorizontal / unit, settled, this.arrival(m.settled_band(settled)) / unit],
       Number(this.rolls),
     );
   }
 
-  /** When the tilt was largest, in natural units, once `ends` has searched for it. */
+  /** When the tilt was largest, s, once `ends` has searched for it. */
   peakTime() {
     const { place } = this.leastAxisZ;
-    return place ? place.source.time(place.step, place.part) : this.trajectory.time;
+    if (!place) return this.trajectory.time * this.units.time;
+    return place.segment.time(place.step, place.part);
   }
 
   /** The flights that begin on the table: how many there are, and the largest gap below them, m. */
@@ -438,43 +476,36 @@ class Run {
 
   /** What became of the launch, as clauses of a name and numbers; what theory says of it ends with a push. */
   get account() {
-    const clauses = m.account_of(this.facts).map(({ name, numbers, part }) => ({
-      name,
-      numbers: Object.fromEntries(numbers.entries()),
-      part,
-    }));
+    const clauses = clausesOf(this.facts);
     if (!this.pushes.length || this.status.name === "inaccurate") return clauses;
-    const pushes = this.pushes.map(({ time, impulse }) => ({
-      name: impulse > 0 ? "is_pushed" : "meets_friction",
-      numbers: { time },
-      part: "motion",
-    }));
+    const pushes = this.pushes.flatMap(clausesOfPush);
     const of = (part) => clauses.filter((clause) => clause.part === part);
+    const launch = clausesOf(replace(this.facts, { problem: this.problem }));
     const motion = [...of("motion"), ...pushes].sort(
       (one, other) => (one.numbers.time ?? Infinity) - (other.numbers.time ?? Infinity),
     );
-    return [...of("launch"), ...motion, ...of("end")];
+    return [...launch.filter(({ part }) => part === "launch"), ...motion, ...of("end")];
   }
 
-  /** First time at which n_z is in a band; NaN if it never is. */
+  /** First time, s, at which n_z is in a band; NaN if it never is. */
   arrival([low, high]) {
     if (Number.isNaN(low)) return NaN;
-    for (const { solution } of this.segments) {
-      for (let step = 0; step < solution.count; step += 1) {
-        const part = firstPartInBand(solution, step, low, high);
-        if (!Number.isNaN(part)) return solution.time(step, part);
+    for (const segment of this.segments) {
+      for (let step = 0; step < segment.solution.count; step += 1) {
+        const part = firstPartInBand(segment.solution, step, low, high);
+        if (!Number.isNaN(part)) return segment.time(step, part);
       }
     }
     return NaN;
   }
 
-  /** Time since which n_z stays in a band; NaN of a band of NaN. */
+  /** Time, s, since which n_z stays in a band; NaN of a band of NaN. */
   since([low, high]) {
     if (Number.isNaN(low)) return NaN;
-    for (const { solution } of [...this.segments].reverse()) {
-      for (let step = solution.count - 1; step >= 0; step -= 1) {
-        const part = lastPartOutside(solution, step, low, high);
-        if (!Number.isNaN(part)) return solution.time(step, part);
+    for (const segment of [...this.segments].reverse()) {
+      for (let step = segment.solution.count - 1; step >= 0; step -= 1) {
+        const part = lastPartOutside(segment.solution, step, low, high);
+        if (!Number.isNaN(part)) return segment.time(step, part);
       }
     }
     return 0;
@@ -484,10 +515,9 @@ class Run {
   addLaunch() {
     const [mode, numbers] = m.initial_mode(this.start, this.top);
     const still = DenseSolution.in_time([0, 1], [numbers.map((number) => [number])]);
-    const segment = new SegmentReader(mode, still, "sliding");
+    const segment = this.addSegment(mode, still, "sliding");
     segment.sums.set(this.sums);
     segment.poles.push(this.pole);
-    this.segments.push(segment);
   }
 
   /** Every variable of the catalogue's SAMPLED at some times, s, or at so many from start to end. */
@@ -498,7 +528,7 @@ class Run {
       track[name] = new Float64Array(times.length * variable.width);
     }
     times.forEach((time, i) => {
-      this.sample(track, i, time / this.units.time);
+      this.sample(track, i, time);
     });
     makeContinuous(track.orientation);
     return track;
@@ -515,11 +545,12 @@ class Run {
     return Float64Array.from(times);
   }
 
-  /** Put the variables at a time into a track; where two segments meet, those of the earlier one. */
-  sample(track, i, time) {
+  /** Put the variables at a time, s, into a track; where two segments meet, those of the earlier one. */
+  sample(track, i, seconds) {
     const { segments } = this;
-    const place = earliest(segments.length, (k) => segments[k].solution.end >= time);
-    const segment = segments[place];
+    const within = ({ solution, units }) => solution.end >= seconds / units.time;
+    const segment = segments[earliest(segments.length, (k) => within(segments[k]))];
+    const time = seconds / segment.units.time;
     const step = segment.solution.step(time);
     const part = segment.solution.part(step, time);
     const pole = segment.poles[step];
@@ -532,12 +563,29 @@ class Run {
       pole,
       null,
     );
-    for (const [name, value] of m.observe(samples, this.top, this.units).entries()) {
+    for (const [name, value] of m.observe(samples, segment.top, segment.units).entries()) {
       if (typeof value === "number") track[name][i] = value;
       else track[name].set(value, i * value.length);
     }
     track.mode.push(segment.label);
   }
+}
+
+/** The clauses of the account of a run, as plain data. */
+const clausesOf = (facts) =>
+  m.account_of(facts).map(({ name, numbers, part }) => ({
+    name,
+    numbers: Object.fromEntries(numbers.entries()),
+    part,
+  }));
+
+/** The clauses of a push: what each change of it is. */
+function clausesOfPush({ time, impulse, mu, slope }) {
+  const clauses = [];
+  if (impulse > 0) clauses.push(["is_pushed", { time }]);
+  if (mu !== null) clauses.push(["meets_friction", { time }]);
+  if (slope !== null) clauses.push(["meets_slope", { time, tilt: slope }]);
+  return clauses.map(([name, numbers]) => ({ name, numbers, part: "motion" }));
 }
 
 /** A transition whose events are later by a time. */
@@ -546,10 +594,12 @@ function after(transition, time) {
   return replace(transition, { events });
 }
 
-/** A solution in a contact mode, and what is read off its numbers. */
+/** A solution in a contact mode, of a top in natural units, and what is read off its numbers. */
 class SegmentReader {
-  constructor(mode, solution, label) {
+  constructor(mode, solution, label, top, units) {
     this.mode = mode;
+    this.top = top;
+    this.units = units;
     this.checksForce = mode instanceof m.ContactMode || mode instanceof m.TransientMode;
     this.solution = solution;
     this.label = label;
@@ -562,6 +612,11 @@ class SegmentReader {
     this.poles = [];
     // Gauss's rule with four nodes is exact up to degree 7.
     this.rule = GAUSS[solution.degree > 7 ? 8 : 4];
+  }
+
+  /** When a part of a step has passed, s. */
+  time(step, part) {
+    return this.solution.time(step, part) * this.units.time;
   }
 
   /** The numbers at a part of a step, in an array that the next call overwrites. */
@@ -593,7 +648,7 @@ class SegmentReader {
 /** The least value of a quantity along a run: the values it is known to take, and where it may be less. */
 class LeastValue {
   value = Infinity;
-  /** Where it takes this value: a source of values, a step and its part; null for the end of the run. */
+  /** Where it takes this value: a segment, a step and its part; null for the end of the run. */
   place = null;
   candidates = [];
 
@@ -604,24 +659,30 @@ class LeastValue {
   }
 
   /**
-   * Take in a value in a step of a source, and the step itself if the quantity may be less there, down to a bound;
+   * Take in a value in a step of a segment, and the step itself if the quantity may be less there, down to a bound;
    * `makeValues` makes the quantity as a function of the part that has passed.
    */
-  include(value, bound, source, step, makeValues) {
-    this.includeValue(value, { source, step, part: 0 });
-    if (bound < this.value) this.candidates.push({ bound, source, step, makeValues });
+  include(value, bound, segment, step, makeValues) {
+    this.includeValue(value, { segment, step, part: 0 });
+    if (bound < this.value) this.candidates.push({ bound, segment, step, makeValues });
   }
 
   /** The least value, searched for in the steps where it may be. */
   refined() {
     const candidates = this.candidates.filter(({ bound }) => bound < this.value);
     candidates.sort((a, b) => a.bound - b.bound);
-    for (const { bound, source, step, makeValues } of candidates) {
+    for (const { bound, segment, step, makeValues } of candidates) {
       if (bound >= this.value) break;
       const { part, value } = leastInStep(makeValues(), this.value);
-      this.includeValue(value, { source, step, part });
+      this.includeValue(value, { segment, step, part });
     }
     return this.value;
+  }
+
+  /** Go over to another unit, from that which was. */
+  change(unit) {
+    this.value = this.refined() / unit;
+    this.candidates = [];
   }
 }
 

@@ -75,7 +75,8 @@ function nameOf(field) {
 function valueText(field, value, setup, units) {
   if (field === "friction.kind") return t(`laws.${value}`);
   if (value === undefined) return "–";
-  if (field === "pushes") return value.map((push) => pushText(push, setup.problem)).join(" · ");
+  if (field === "pushes")
+    return value.map((push) => pushText(push, setup.problem, units)).join(" · ");
   if (typeof value === "string") return value;
   const dial = ALL.find((one) => one.field === field);
   if (typeof value !== "number" || !dial) return JSON.stringify(value);

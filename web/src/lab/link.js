@@ -18,8 +18,8 @@ const KNOWN = [
 ];
 const FORBIDDEN = ["__proto__", "prototype", "constructor"];
 const TABLES = /^(body|friction|launch|contact|table|air)\./;
-// What a push says of friction that stays as it is.
-const SAME_FRICTION = "-";
+// What a push says of friction, or of a slope, that stays as it is.
+const SAME = "-";
 const PLAIN = ["gravity", "rolling_resistance", "duration"];
 // What the player shows where all that can be shown is off.
 const NO_ARROWS = "none";
@@ -76,16 +76,21 @@ export function readLaunch(query) {
   return flaw ? { setup: null, unread, flaw } : { setup, unread, flaw: null };
 }
 
-// A push as four words: its time, s, its impulse, N s, its direction, rad, and the friction from then on, if another.
-const writePush = ({ time, impulse, direction, mu }) =>
-  [time, impulse, direction, mu ?? SAME_FRICTION].join(" ");
+// A push as words: its time, s, its impulse, N s, its direction, rad, the friction from then on, if another, and, of a
+// table that is lifted, its slope, rad.
+function writePush({ time, impulse, direction, mu, slope }) {
+  const lifted = slope === null ? [] : [slope];
+  return [time, impulse, direction, mu ?? SAME, ...lifted].join(" ");
+}
 
 function readPush(text) {
   const words = text.split(" ");
   const [time, impulse, direction] = words.map(Number);
-  const mu = words[3] === SAME_FRICTION ? null : Number(words[3]);
-  const push = { time, impulse, direction, mu };
-  const isRight = words.length === 4 && words.every(Boolean) && isPush(push);
+  const [mu, slope] = [words[3], words[4] ?? SAME].map((one) =>
+    one === SAME ? null : Number(one),
+  );
+  const push = { time, impulse, direction, mu, slope };
+  const isRight = [4, 5].includes(words.length) && words.every(Boolean) && isPush(push);
   return isRight ? push : null;
 }
 

@@ -5,6 +5,7 @@ import { useEffect, useState } from "preact/hooks";
 import { Bring, Brought, dropping } from "./brought.jsx";
 import { t } from "./i18n.js";
 import { changed, withPushes } from "./setup.js";
+import { NamedSlider } from "./slider.jsx";
 import { bodyOf, FIRST, MATERIALS, massesOf, possible, SIZES, sectionOf } from "./turning.js";
 import { digits, shown } from "./units.js";
 
@@ -64,7 +65,14 @@ function Shaped({ lab }) {
       <p>{t("own.intro")}</p>
       <Section top={top} onDrag={(stem) => set({ stem })} />
       {Object.keys(SIZES).map((name) => (
-        <Size name={name} value={top[name]} onChange={(value) => set({ [name]: value })} />
+        <NamedSlider
+          name={t(`own.${name}`)}
+          text={sizeText(name, top[name])}
+          range={SIZES[name]}
+          value={top[name]}
+          mark={name}
+          onChange={(value) => set({ [name]: value })}
+        />
       ))}
       <Material value={top.material} onChange={(material) => set({ material })} />
       <dl class="facts">
@@ -86,27 +94,6 @@ function Shaped({ lab }) {
         {t("own.spin")}
       </button>
     </>
-  );
-}
-
-// A slider for one of the sizes of the shape.
-function Size({ name, value, onChange }) {
-  const [low, high, step] = SIZES[name];
-  return (
-    <label class="own-dial">
-      <span>
-        {t(`own.${name}`)} <b>{sizeText(name, value)}</b>
-      </span>
-      <input
-        type="range"
-        min={low}
-        max={high}
-        step={step}
-        value={value}
-        data-own={name}
-        onInput={(event) => onChange(Number(event.target.value))}
-      />
-    </label>
   );
 }
 

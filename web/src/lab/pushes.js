@@ -1,4 +1,5 @@
-// Pushes of a top while it spins: a sideways impulse on its stem, other friction of the table from then on, or both.
+// Pushes of a top while it spins: a sideways impulse on its stem, another friction or slope of the table from then on, or
+// several of them.
 
 /** The most pushes of one run. */
 export const MOST_PUSHES = 8;
@@ -18,11 +19,11 @@ export const DIRECTIONS = {
   right: -Math.PI / 2,
 };
 
-export function isPush({ time, impulse, direction, mu }) {
+export function isPush({ time, impulse, direction, mu, slope }) {
+  const isImpulse = impulse >= 0 && impulse <= MOST_IMPULSE && Number.isFinite(direction);
   const isFriction = mu === null || (mu >= 0 && mu <= MOST_FRICTION);
-  return (
-    time > 0 && impulse >= 0 && impulse <= MOST_IMPULSE && Number.isFinite(direction) && isFriction
-  );
+  const isSlope = slope === null || (slope >= 0 && slope < Math.PI / 2);
+  return time > 0 && isImpulse && isFriction && isSlope;
 }
 
 /** Pushes in order of time; of two at one time the later one in the list. */

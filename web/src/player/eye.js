@@ -26,7 +26,7 @@ export class Eye {
   }
 
   // Stand on level ground beside a table of some slope, rad, that falls in the direction of its azimuth.
-  standBeside({ slope = 0, azimuth = 0 } = {}) {
+  standBeside({ slope, azimuth }) {
     const across = new THREE.Vector3(-Math.sin(azimuth), Math.cos(azimuth), 0);
     this.ground.setFromAxisAngle(across, -slope);
   }

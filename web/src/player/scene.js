@@ -149,8 +149,7 @@ export class Scene {
   // Show another run.
   load(track) {
     this.track = track;
-    const { body, problem } = track.header;
-    this.eye.standBeside(problem?.table);
+    const { body } = track.header;
     this.setTheme(this.themed);
     const shape = JSON.stringify(body);
     if (shape !== this.shape) {
@@ -278,6 +277,7 @@ export class Scene {
     if (this.trace.visible) cutTrace(this.trace, time);
     this.point(pose, [x, y, z], time, unit);
     this.controls.update();
+    this.eye.standBeside(this.track.table(time));
     this.eye.drawFrom(() => this.renderer.render(this.world, this.camera));
   }
 

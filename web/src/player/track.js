@@ -58,6 +58,14 @@ export class Track {
     return isStem ? "stem" : "other";
   }
 
+  // The table at a time: pushes may have lifted it.
+  table(time) {
+    const { problem, pushes = [], reached = 0 } = this.header;
+    const isLifted = (push, k) => k < reached && push.time <= time && (push.slope ?? null) !== null;
+    const slope = pushes.findLast(isLifted)?.slope ?? problem?.table?.slope ?? 0;
+    return { slope, azimuth: problem?.table?.azimuth ?? 0 };
+  }
+
   // How fast it turns at a time about whatever axis, and about its own, rad/s.
   turning(time) {
     const { axis, momentum } = this.at(time);
