@@ -4,9 +4,9 @@ Every name is imported from this module, ``from tippetop.extend import FrictionL
 used as ``tt.extend.Traction``. The page `Extend the program` shows one of each.
 
 Laws, surfaces and equations of motion are functions in plain operators, which run on floats and
-arrays and are recorded as expressions to be compiled. `where`, `abs`, `min`, `max` and `sqrt` of
-this module accept all of these; ``if``, Python's own ``min`` and ``max``, and functions of `math`
-and `numpy` do not.
+arrays and are recorded as expressions to be compiled. `where`, `abs`, `min`, `max`, `sqrt`,
+`exp`, `log` and `tanh` of this module accept all of these; ``if``, Python's own ``min`` and
+``max``, and functions of `math` and `numpy` do not.
 
 The names in `__all__`, their parameters and the attributes that the documentation lists are
 stable: code that uses only them keeps working within a major version. A name that must go is
@@ -30,6 +30,7 @@ from tippetop.graph.graph import Node
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Arc, Guard, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics import elementary
 from tippetop.mechanics.laws.friction import NO_TORQUE, FrictionLaw, Traction
 from tippetop.mechanics.motion import (
     SlidingContact,
@@ -91,7 +92,9 @@ __all__ = [
     "Vector",
     "abs",
     "axis_rate",
+    "exp",
     "friction_law",
+    "log",
     "make_integrator",
     "max",
     "min",
@@ -99,6 +102,7 @@ __all__ = [
     "sliding_contact",
     "sliding_rates",
     "sqrt",
+    "tanh",
     "where",
 ]
 
@@ -170,3 +174,48 @@ def sqrt(number: Scalar) -> Scalar:
     1.5
     """
     return power(number, 0.5)
+
+
+def exp(number: Scalar) -> Scalar:
+    """Return the exponential function of a number; infinity where it is larger than any float.
+
+    Examples
+    --------
+    Exponential Stribeck friction: the coefficient falls from `still` to `fast` as slip grows
+    beyond the speed `slow`, and the smallest slips are smoothed below the speed `smooth`.
+
+    >>> import tippetop as tt
+    >>> @tt.extend.friction_law(still="1", fast="1", slow="m s-1", smooth="m s-1")
+    ... def stribeck_exponential(slip, angular_velocity, still, fast, slow, smooth):
+    ...     squared = slip[0] ** 2 + slip[1] ** 2
+    ...     mu = fast + (still - fast) * tt.extend.exp(-squared / slow**2)
+    ...     factor = -mu / tt.extend.sqrt(squared + smooth**2)
+    ...     return factor * slip[0], factor * slip[1]
+    >>> tt.extend.exp(0.0)
+    1.0
+    """
+    return elementary.exp(number)
+
+
+def log(number: Scalar) -> Scalar:
+    """Return the natural logarithm; minus infinity of 0, and no number of a negative one.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.extend.log(1.0)
+    0.0
+    """
+    return elementary.log(number)
+
+
+def tanh(number: Scalar) -> Scalar:
+    """Return the hyperbolic tangent of a number.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> tt.extend.tanh(0.0)
+    0.0
+    """
+    return elementary.tanh(number)

@@ -6,7 +6,7 @@ import pytest
 from campaigns import among
 from every_motion import CASES, states
 from tippetop.extend import abs as absolute
-from tippetop.extend import where
+from tippetop.extend import exp, log, tanh, where
 from tippetop.graph.llvm_series import with_choices
 from tippetop.graph.recording import record
 from tippetop.integrators.base import Guard, Motion
@@ -97,16 +97,28 @@ def test_every_operation_has_its_rule_at_every_order(order):
             a * b - b / a + p[0] * a,
             (a * a + b * b) ** 0.5 + 1.0 / b,
             (a + 2.0) ** 0.3 - (b + 3.0) ** -1.7 + p[0] ** 1.5,
+            exp(-a * b) + log(a + b) * exp(p[0]) + log(p[0]),
+            tanh(a - b) * tanh(b) + tanh(p[0]),
         )
 
     guards = (Guard("mixed", lambda y, p: y[0] ** 3 - y[1] * y[2] / p[0] + 1.0),)
-    motion = Motion(rates, size=3, parameters=1, guards=guards)
+    motion = Motion(rates, size=5, parameters=1, guards=guards)
     expand = compiled(motion, order)
-    for state in np.random.default_rng(1).uniform(0.5, 1.5, (5, 3)):
+    for state in np.random.default_rng(1).uniform(0.5, 1.5, (5, 5)):
         # What is left from one state does not show in the next.
         exact = by_series(motion, state.astype(np.longdouble), (0.7,), order)
         rounded = by_series(motion, (state * (1.0 + 1e-15)).tolist(), (0.7,), order)
         assert_same(expand(state, (0.7,)), exact, rounded)
+
+
+@pytest.mark.parametrize(("function", "inverse"), [(exp, np.exp), (log, np.log), (tanh, np.tanh)])
+def test_coefficients_of_elementary_functions_sum_to_them(function, inverse) -> None:
+    """f(1 + t) is the sum of its coefficients within its circle of convergence."""
+    motion = Motion(lambda y, p: (1.0, function(y[0])), 2, 0)
+    found, _ = compiled(motion, 30)([1.0, 0.0], [])
+    rates = found[1, 1:] * np.arange(1, 31)
+    for time in (-0.2, 0.1, 0.25):
+        assert np.polyval(rates[::-1], time) == pytest.approx(inverse(1.0 + time), rel=1e-14)
 
 
 def test_where_a_law_has_another_branch_a_step_ends():

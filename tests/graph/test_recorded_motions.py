@@ -13,6 +13,7 @@ from campaigns import among
 from every_motion import CASES, SURFACES, everything, states
 from node import NODE
 from tippetop.contact.contact_mode import sliding_motion
+from tippetop.extend import exp, log, tanh
 from tippetop.graph import graph, llvm
 from tippetop.graph.graph import NotRecordable
 from tippetop.graph.hoisting import evaluated, hoisted
@@ -263,10 +264,14 @@ def test_elementary_functions_and_selections_are_printed():
             y[0].graph.select(y[0] < y[1], y[0], abs(-y[1])),
             y[2] ** 1.3,
             y[2] ** -2.25,
+            exp(y[0]),
+            log(y[1]),
+            tanh(y[2]),
         )
 
     y = [0.3, 1.2, 0.7, 2.0, 90.0, 0.01, -0.02]
     expected = (*published_rates(y, REPORT, math), 0.3, 0.7**1.3, 0.7**-2.25)
+    expected += (math.exp(0.3), math.log(1.2), math.tanh(0.7))
     taken = record(function, 7, 0)
     code = [javascript_source(taken, "f"), "found.out = [];", f"f({json.dumps(y)}, [], found.out);"]
     for out in (by_node(code)["out"], by_llvm(taken, np.array([y]), ())[0]):

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from tippetop.integrators.base import Array
+from tippetop.mechanics import elementary
 
 
 class Dual:
@@ -60,6 +61,20 @@ class Dual:
             return Dual(1.0, 0.0 * self.parts)
         slope = exponent * self.value ** (exponent - 1.0)
         return Dual(self.value**exponent, slope * self.parts)
+
+    def exp(self) -> "Dual":
+        """Return the exponential function."""
+        value = elementary.exp(self.value)
+        return Dual(value, value * self.parts)
+
+    def log(self) -> "Dual":
+        """Return the natural logarithm."""
+        return Dual(elementary.log(self.value), self.parts / self.value)
+
+    def tanh(self) -> "Dual":
+        """Return the hyperbolic tangent."""
+        value = elementary.tanh(self.value)
+        return Dual(value, (1.0 - value * value) * self.parts)
 
     def __abs__(self) -> "Dual":
         return self if self.value >= 0.0 else -self

@@ -63,6 +63,13 @@ def _derived(node: Node, parts: Sequence[Tangent]) -> Tangent:
         case graph.COSINE:
             factor = -make.node(graph.SINE, (a,))
             return tuple([_times(da, factor) for (da,) in rows])
+        case graph.EXPONENTIAL:
+            return tuple([_times(da, node) for (da,) in rows])
+        case graph.LOGARITHM:
+            return tuple([_over(da, a) for (da,) in rows])
+        case graph.HYPERBOLIC_TANGENT:
+            factor = 1.0 - node * node
+            return tuple([_times(da, factor) for (da,) in rows])
         case graph.SIZE:
             rises = make.as_node(0.0) < a
             return tuple([make.select(rises, da, -da) for (da,) in rows])

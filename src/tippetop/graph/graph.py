@@ -15,6 +15,7 @@ STATE, PARAMETER, CONSTANT = "y", "p", "constant"
 SUM, DIFFERENCE, PRODUCT, QUOTIENT = "+", "-", "*", "/"
 NEGATIVE, LESS, SELECT, RARELY = "negative", "less", "select", "rarely"
 SIZE, ROOT, POWER, SINE, COSINE = "abs", "sqrt", "pow", "sin", "cos"
+EXPONENTIAL, LOGARITHM, HYPERBOLIC_TANGENT = "exp", "log", "tanh"
 SPREAD, TOTAL = "spread", "total"
 """Names of the operations of nodes. Where a node has a value for each of several lanes, `SPREAD`
 gives every lane the value of one of them, and `TOTAL` gives every lane their sum.
@@ -85,6 +86,21 @@ class Node:
 
     def __abs__(self) -> Any:
         return self.graph.node(SIZE, (self.operands[0] if self.name == NEGATIVE else self,))
+
+    # translate: skip
+    def exp(self) -> Any:
+        """Return the exponential function."""
+        return self.graph.node(EXPONENTIAL, (self,))
+
+    # translate: skip
+    def log(self) -> Any:
+        """Return the natural logarithm."""
+        return self.graph.node(LOGARITHM, (self,))
+
+    # translate: skip
+    def tanh(self) -> Any:
+        """Return the hyperbolic tangent."""
+        return self.graph.node(HYPERBOLIC_TANGENT, (self,))
 
     def __lt__(self, operand: Any) -> Any:
         return self.graph.node(LESS, (self, self.graph.as_node(operand)))

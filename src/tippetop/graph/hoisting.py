@@ -6,6 +6,7 @@ from typing import Any
 
 from tippetop.graph import graph
 from tippetop.graph.recording import Recorded, needed
+from tippetop.mechanics import elementary
 
 OPERATIONS: Mapping[str, Callable[..., Any]] = {
     graph.SUM: operator.add,
@@ -18,6 +19,9 @@ OPERATIONS: Mapping[str, Callable[..., Any]] = {
     graph.SELECT: lambda condition, a, b: a if condition else b,
     graph.ROOT: lambda number: number**0.5,
     graph.POWER: operator.pow,
+    graph.EXPONENTIAL: elementary.exp,
+    graph.LOGARITHM: elementary.log,
+    graph.HYPERBOLIC_TANGENT: elementary.tanh,
 }
 """What plain operators make a node."""
 

@@ -43,6 +43,9 @@ SPELLINGS = {
     graph.ROOT: CALL,
     graph.SINE: CALL,
     graph.COSINE: CALL,
+    graph.EXPONENTIAL: CALL,
+    graph.LOGARITHM: CALL,
+    graph.HYPERBOLIC_TANGENT: CALL,
     graph.POWER: "{t} = call {v} @llvm.pow.v{n}f64({v} {0}, {v} {1})",
     graph.LESS: "{t}_flag = fcmp ogt {v} {1}, {0}\n  {t} = uitofp <{n} x i1> {t}_flag to {v}",
     graph.SELECT: "{t}_flag = fcmp une {v} {0}, zeroinitializer\n  " + CHOICE.replace("{0}", "{t}"),
@@ -146,7 +149,7 @@ def llvm_source(functions: Mapping[str, Recorded], abreast: int, *, again: bool 
     parts = [
         f"declare {vector}"
         f" @llvm.{name}.v{abreast}f64({vector}{', ' + vector if name == 'pow' else ''})\n"
-        for name in ("fabs", "sqrt", "sin", "cos", "pow")
+        for name in ("fabs", "sqrt", "sin", "cos", "exp", "log", "tanh", "pow")
     ]
     parts.append(f"declare double @llvm.vector.reduce.fadd.v{abreast}f64(double, {vector})\n")
     parts.append(f"declare i1 @llvm.vector.reduce.or.v{abreast}i1(<{abreast} x i1>)\n")

@@ -1,9 +1,9 @@
 """Taylor coefficients of a recorded motion as LLVM's code: one loop over the orders.
 
 Coefficient k of every node follows from coefficients up to k of its operands (Jorba and Zou 2005,
-Experimental Mathematics 14, section 2.1). The convolutions in products, quotients, roots and
-powers run over vectors of `WIDTH` coefficients. The code grows with the number of nodes and not
-with the square of the order, so that it compiles in a fraction of a second.
+Experimental Mathematics 14, section 2.1). The convolutions in products, quotients, roots, powers
+and elementary functions run over vectors of `WIDTH` coefficients. The code grows with the number
+of nodes and not with the square of the order, so that it compiles in a fraction of a second.
 """
 
 from collections.abc import Iterable
@@ -18,8 +18,10 @@ from tippetop.graph.recording import Recorded, needed
 WIDTH = 8
 """Coefficients a vector."""
 
-PLAIN, DERIVATIVE = "plain", "derivative"
-"""Which coefficients a row has: a node's, or those times their orders."""
+PLAIN, DERIVATIVE, SLOPE = "plain", "derivative", "slope"
+"""Which coefficients a row has: a node's, those times their orders, or those of the derivative of
+the operation, 1 - node^2 of a hyperbolic tangent.
+"""
 
 Row: TypeAlias = tuple[str, int]
 """Which coefficients, and the place of the node."""
@@ -39,6 +41,9 @@ SCALARS = {
     graph.POWER: "call double @llvm.pow.f64(double {0}, double {1})",
     graph.SINE: "call double @llvm.sin.f64(double {0})",
     graph.COSINE: "call double @llvm.cos.f64(double {0})",
+    graph.EXPONENTIAL: "call double @llvm.exp.f64(double {0})",
+    graph.LOGARITHM: "call double @llvm.log.f64(double {0})",
+    graph.HYPERBOLIC_TANGENT: "call double @llvm.tanh.f64(double {0})",
 }
 """Operations on single numbers."""
 
@@ -47,6 +52,9 @@ declare double @llvm.fabs.f64(double)
 declare double @llvm.sqrt.f64(double)
 declare double @llvm.sin.f64(double)
 declare double @llvm.cos.f64(double)
+declare double @llvm.exp.f64(double)
+declare double @llvm.log.f64(double)
+declare double @llvm.tanh.f64(double)
 declare double @llvm.pow.f64(double, double)
 declare double @llvm.vector.reduce.fadd.v{n}f64(double, <{n} x double>)
 """
@@ -131,6 +139,7 @@ class _SeriesPrinter:
         # What is printed of a node so far: its value, and its coefficient in the current order.
         self.first = dict[int, str]()
         self.term = dict[int, str]()
+        self.first_slope = dict[int, str]()
         self.inverse = dict[tuple[str, int], str]()
         self.chunks = dict[tuple[str, Row, int], str]()
 
@@ -171,6 +180,13 @@ class _SeriesPrinter:
             case graph.POWER:
                 base = node.operands[0].place
                 return [(PLAIN, base), (DERIVATIVE, base), (PLAIN, node.place)]
+            case graph.EXPONENTIAL:
+                return [(DERIVATIVE, node.operands[0].place), (PLAIN, node.place)]
+            case graph.LOGARITHM:
+                return [(PLAIN, node.operands[0].place), (DERIVATIVE, node.place)]
+            case graph.HYPERBOLIC_TANGENT:
+                operand = node.operands[0].place
+                return [(DERIVATIVE, operand), (PLAIN, node.place), (SLOPE, node.place)]
         return []
 
     def lines(self) -> list[str]:
@@ -225,6 +241,8 @@ class _SeriesPrinter:
         for node in self.recorded.nodes:
             if node.place in self.moving:
                 self._print_inverse(node)
+            if node.place in self.moving and node.name == graph.HYPERBOLIC_TANGENT:
+                self.first_slope[node.place] = self._slope(node)
         for i in range(self.recorded.size):
             self._store(self._load("%y", i), "%out", i * (self.order + 1))
             self._store(
@@ -260,7 +278,7 @@ class _SeriesPrinter:
                 operand, factor = node.operands[1].place, "1.0"
             case graph.ROOT:
                 operand, factor = node.place, "0.5"
-            case graph.POWER:
+            case graph.POWER | graph.LOGARITHM:
                 operand, factor = node.operands[0].place, "1.0"
             case _:
                 return
@@ -289,6 +307,8 @@ class _SeriesPrinter:
             term = self.term[place]
             if name == DERIVATIVE:
                 term = self._product(self.order_number, term)
+            elif name == SLOPE:
+                term = self._slope_coefficient(place)
             self._store(
                 term, "%room", self._new(f"add i64 %k, {row * self.row_length + self.zeros}")
             )
@@ -337,6 +357,14 @@ class _SeriesPrinter:
                 return self._product(above, self.inverse["0.5", node.place])
             case graph.POWER if b.place not in self.moving:
                 return self._power(node, a, b)
+            case graph.EXPONENTIAL:
+                slope = (PLAIN, node.place), self.first[node.place]
+                return self._integral(a, *slope)
+            case graph.HYPERBOLIC_TANGENT:
+                slope = (SLOPE, node.place), self.first_slope[node.place]
+                return self._integral(a, *slope)
+            case graph.LOGARITHM:
+                return self._logarithm(node, a)
             case graph.SELECT:
                 flag = self._new(f"fcmp une double {self.first[node.operands[0].place]}, {ZERO}")
                 yes, no = (self.term.get(operand.place, ZERO) for operand in node.operands[1:])
@@ -367,6 +395,34 @@ class _SeriesPrinter:
         inverse = self._new(f"fdiv double {self.inverse['1.0', base.place]}, {self.order_number}")
         assert total is not None
         return self._product(total, inverse)
+
+    def _integral(self, operand: graph.Node, slope: Row, first_slope: str) -> str:
+        """Return the coefficient of a function whose derivative, its slope, is a row: k f_k = sum
+        of j a_j slope_(k-j).
+        """
+        scaled = self._product(self.order_number, self.term[operand.place])
+        derivative = (DERIVATIVE, operand.place)
+        total = self._combined([], [(1.0, derivative, slope)], [(1.0, scaled, first_slope)])
+        return self._new(f"fdiv double {total}, {self.order_number}")
+
+    def _slope(self, node: graph.Node) -> str:
+        """Return the value of the derivative of a hyperbolic tangent, 1 - node^2."""
+        value = self.first[node.place]
+        return self._new(f"fsub contract double 1.0, {self._product(value, value)}")
+
+    def _slope_coefficient(self, place: int) -> str:
+        """Return the coefficient of the derivative of a hyperbolic tangent."""
+        row, first, term = (PLAIN, place), self.first[place], self.term[place]
+        ends = [(-1.0, first, term), (-1.0, term, first)]
+        return self._combined([], [(-1.0, row, row)], ends)
+
+    def _logarithm(self, node: graph.Node, operand: graph.Node) -> str:
+        """Return the coefficient of a logarithm: k a_0 l_k = k a_k - sum of j l_j a_(k-j)."""
+        below = self._combined([], [(1.0, (DERIVATIVE, node.place), (PLAIN, operand.place))])
+        rest = self._new(f"fdiv double {below}, {self.order_number}")
+        above = self._sum([(1.0, self.term[operand.place]), (-1.0, rest)])
+        assert above is not None
+        return self._product(above, self.inverse["1.0", operand.place])
 
     def _leaves(self, node: graph.Node) -> list[tuple[float, graph.Node]]:
         """Return the moving nodes, with signs, of which a sum consists."""

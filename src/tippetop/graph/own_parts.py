@@ -13,8 +13,9 @@ from tippetop.support.errors import Described, InvalidInput
 
 CANNOT_BE_RECORDED = "cannot be recorded as an expression"
 HINT = (
-    "write laws and surfaces with + - * / ** < and >, and with tippetop.extend.where, abs, min, max"
-    " and sqrt in place of Python's if, and, or, min and max and of functions of math and numpy"
+    "write laws and surfaces with + - * / ** < and >, and with tippetop.extend.where, abs, min,"
+    " max, sqrt, exp, log and tanh in place of Python's if, and, or, min and max and of functions"
+    " of math and numpy"
 )
 
 PACKAGE = __name__.partition(".")[0]

@@ -63,5 +63,5 @@ def _once(operation: Callable[..., Any]) -> Callable[..., Any]:
     return shared
 
 
-for name in ("__add__", "__mul__", "__truediv__", "__pow__", "__neg__"):
+for name in ("__add__", "__mul__", "__truediv__", "__pow__", "__neg__", "exp", "log", "tanh"):
     setattr(SharedSeries, name, _once(getattr(Series, name)))

@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from operator import mul
 from typing import Any, Protocol
 
+from tippetop.mechanics import elementary
 from tippetop.mechanics.vectors import Scalar, whole_power
 
 
@@ -175,6 +176,51 @@ class Series:
 
         power = self._made(rule)
         return power
+
+    # translate: skip
+    def exp(self) -> "Series":
+        """Return the exponential function, by e' = a' e, term by term."""
+
+        def rule(k: int) -> Scalar:
+            return self._integral(made.coefficients, k) if k else elementary.exp(self[0])
+
+        made = self._made(rule)
+        return made
+
+    # translate: skip
+    def log(self) -> "Series":
+        """Return the natural logarithm, by a l' = a', term by term."""
+
+        def rule(k: int) -> Scalar:
+            if k == 0:
+                return elementary.log(self[0])
+            base, coefficients = self.up_to(k), made.coefficients
+            factors = [-j / k for j in range(1, k)]
+            terms = list(map(mul, factors, map(mul, coefficients[1:], base[k - 1 : 0 : -1])))
+            return self.arithmetic.total([base[k], *terms]) / base[0]
+
+        made = self._made(rule)
+        return made
+
+    # translate: skip
+    def tanh(self) -> "Series":
+        """Return the hyperbolic tangent, by t' = a' (1 - t^2), term by term."""
+
+        def rule(k: int) -> Scalar:
+            return self._integral(slope.up_to(k - 1), k) if k else elementary.tanh(self[0])
+
+        made = self._made(rule)
+        slope = 1.0 - made * made
+        return made
+
+    # translate: skip
+    def _integral(self, slope: list[Scalar], k: int) -> Scalar:
+        """Return the k-th coefficient, from 1, of a function of the series whose derivative has
+        these coefficients.
+        """
+        factors = [j / k for j in range(1, k + 1)]
+        terms = map(mul, factors, map(mul, self.up_to(k)[1:], slope[k - 1 :: -1]))
+        return self.arithmetic.total(list(terms))
 
     def __neg__(self) -> "Series":
         return self._made(lambda k: -self[k])
