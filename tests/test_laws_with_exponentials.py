@@ -160,3 +160,21 @@ def test_floats_and_arrays_have_the_same_values(function, expected) -> None:
         [function(number) for number in numbers.tolist()], expected, rtol=1e-15
     )
     assert log(0.0) == -math.inf
+
+
+def test_a_law_without_a_force_at_the_launch_is_told_as_that() -> None:
+    """It divides 0 by 0 where nothing slips."""
+
+    @friction_law(mu="1")
+    def undefined_at_rest(
+        slip: Horizontal, angular_velocity: Vector, mu: Scalar
+    ) -> tuple[Scalar, Scalar]:
+        speed = sqrt(slip[0] ** 2 + slip[1] ** 2)
+        return -mu * slip[0] / speed, -mu * slip[1] / speed
+
+    with pytest.raises(tt.InvalidInput, match="has no finite force at the slip speed") as caught:
+        REPORT.replace({"launch.slip": (0.0, 0.0), "friction": undefined_at_rest(mu=0.3)})
+    assert caught.value.field == "friction"
+    assert "sqrt(v^2 + s^2)" in caught.value.hint
+    moving = REPORT.replace({"launch.slip": (0.1, 0.0), "friction": undefined_at_rest(mu=0.3)})
+    assert moving.friction.mu == 0.3

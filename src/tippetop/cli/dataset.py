@@ -6,7 +6,8 @@ from typing import Annotated
 import typer
 
 from tippetop.cli.options import NUMBER, Force, Json, number_of, number_option
-from tippetop.cli.terminal import progress_bar, show, show_json
+from tippetop.cli.terminal import show, show_json
+from tippetop.support.progress_bar import progress_bar
 
 
 def dataset(

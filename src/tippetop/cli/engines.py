@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tippetop.cli.options import DRAWINGS, NUMBER, Force, Json, number_of, write_figure
-from tippetop.cli.terminal import listing, progress_bar, show, show_json
+from tippetop.cli.terminal import listing, show, show_json
 from tippetop.support.files import place_for, require_ending
+from tippetop.support.progress_bar import progress_bar
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -17,9 +17,10 @@ from tippetop.cli.options import (
     of_a_problem,
     write_figure,
 )
-from tippetop.cli.terminal import listing, progress_bar, show, show_json
+from tippetop.cli.terminal import listing, show, show_json
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import place_for, require_ending
+from tippetop.support.progress_bar import progress_bar
 
 if TYPE_CHECKING:
     from tippetop.fit.fitted import FitResult

@@ -7,7 +7,8 @@ from typing import Annotated
 import typer
 
 from tippetop.cli.options import Force, Json
-from tippetop.cli.terminal import listing, progress_bar, show, show_json
+from tippetop.cli.terminal import listing, show, show_json
+from tippetop.support.progress_bar import progress_bar
 
 
 def reference(

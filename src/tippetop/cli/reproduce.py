@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tippetop.cli.options import Force, Json
-from tippetop.cli.terminal import listing, progress_bar, show, show_json
+from tippetop.cli.terminal import listing, show, show_json
+from tippetop.support.progress_bar import progress_bar
 
 if TYPE_CHECKING:
     from tippetop.report.reproduce import Reproduction

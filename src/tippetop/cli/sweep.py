@@ -19,10 +19,11 @@ from tippetop.cli.options import (
     of_a_problem,
     write_figure,
 )
-from tippetop.cli.terminal import facts, progress_bar, show, show_json
+from tippetop.cli.terminal import facts, show, show_json
 from tippetop.support.errors import MISSING, Described, FileTrouble, InvalidInput
 from tippetop.support.files import in_words, place_for, read_text, require_ending
 from tippetop.support.interrupts import INTERRUPTED
+from tippetop.support.progress_bar import progress_bar
 from tippetop.support.units import NUMBER as NUMBER_WITH_UNIT
 from tippetop.support.units import begins_a_unit
 
@@ -122,6 +123,7 @@ def sweep(
 ) -> None:
     """Simulate many launches, over crossed fields or random draws, and count their outcomes."""
     from tippetop.sweeps import Sweep  # noqa: PLC0415 - slow to import
+    from tippetop.sweeps.run_sweep import shown_by  # noqa: PLC0415
     from tippetop.sweeps.store_layout import refuse_existing, stored_sweep  # noqa: PLC0415
 
     if resume and force:
@@ -151,11 +153,11 @@ def sweep(
     progress: list[Progress] = []
     try:
         with progress_bar() as tell:
+            show_progress = shown_by(tell)
 
             def callback(now: "Progress") -> None:
                 progress.append(now)
-                rate = f" {now.rate:,.0f} launches/s" if now.rate else ""
-                tell(now.done, now.cells, f"{now.done:,} of {now.cells:,}{rate}")
+                show_progress(now)
 
             tt.sweep(
                 **fields,

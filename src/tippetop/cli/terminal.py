@@ -2,15 +2,11 @@
 
 import json
 import math
-import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
-
-from tippetop.support.interrupts import reraise_interrupt
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -64,27 +60,3 @@ def show_json(value: Any) -> None:
     from pydantic_core import to_jsonable_python  # noqa: PLC0415 - slow to import
 
     typer.echo(json.dumps(to_jsonable_python(value, inf_nan_mode="null"), indent=2))
-
-
-@contextmanager
-def progress_bar(label: str = "") -> Iterator[Callable[..., None]]:
-    """Yield a callback that shows progress, remaining and elapsed time on a terminal.
-
-    The callback takes the work done, the work in total and, if it changes, the text shown.
-    """
-    if not sys.stderr.isatty():
-        yield lambda *_: reraise_interrupt()
-        return
-    from rich.console import Console  # noqa: PLC0415
-    from rich.markup import escape  # noqa: PLC0415
-    from rich.progress import Progress, TimeElapsedColumn  # noqa: PLC0415
-
-    columns = (*Progress.get_default_columns(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(escape(f"{label:<28}"), total=None)
-
-        def tell(done: float, total: float, now: str = label) -> None:
-            reraise_interrupt()
-            bar.update(task, completed=done, total=total, description=escape(f"{now:<28}"))
-
-        yield tell

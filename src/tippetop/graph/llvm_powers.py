@@ -12,11 +12,11 @@ from tippetop.graph import graph
 LARGEST = 0.5
 """Exponents between 0 and this are served: so no power of a number overflows."""
 
-LOGARITHM = [2.0 / math.log(2.0) / (2 * k + 1) for k in range(11)]
+LOGARITHM_TERMS = [2.0 / math.log(2.0) / (2 * k + 1) for k in range(11)]
 """log2((1 + s) / (1 - s)) / s in powers of s^2: to rounding for numbers from 2^(-1/2) to 2^(1/2).
 """
 
-EXPONENTIAL = [math.log(2.0) ** k / math.factorial(k) for k in range(14)]
+EXPONENTIAL_TERMS = [math.log(2.0) ** k / math.factorial(k) for k in range(14)]
 """2^f in powers of f, to rounding for |f| <= 1/2."""
 
 FUNCTION = """\
@@ -109,8 +109,8 @@ def power_function(abreast: int) -> str:
         v=v,
         i=f"<{abreast} x i64>",
         n=abreast,
-        logarithm=polynomial("log", LOGARITHM, "%s2"),
-        exponential=polynomial("exp", EXPONENTIAL, "%f"),
+        logarithm=polynomial("log", LOGARITHM_TERMS, "%s2"),
+        exponential=polynomial("exp", EXPONENTIAL_TERMS, "%f"),
         **{name: spread(value, abreast) for name, value in numbers.items()},
         **{name: f"<{', '.join([f'i64 {value}'] * abreast)}>" for name, value in wholes.items()},
     )

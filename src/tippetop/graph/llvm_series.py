@@ -419,8 +419,8 @@ class _SeriesPrinter:
     def _logarithm(self, node: graph.Node, operand: graph.Node) -> str:
         """Return the coefficient of a logarithm: k a_0 l_k = k a_k - sum of j l_j a_(k-j)."""
         below = self._combined([], [(1.0, (DERIVATIVE, node.place), (PLAIN, operand.place))])
-        rest = self._new(f"fdiv double {below}, {self.order_number}")
-        above = self._sum([(1.0, self.term[operand.place]), (-1.0, rest)])
+        mean = self._new(f"fdiv double {below}, {self.order_number}")
+        above = self._sum([(1.0, self.term[operand.place]), (-1.0, mean)])
         assert above is not None
         return self._product(above, self.inverse["1.0", operand.place])
 

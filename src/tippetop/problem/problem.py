@@ -14,10 +14,15 @@ import tomli_w
 from pydantic import model_validator
 
 from tippetop.mechanics.contacts.forces import is_set_valued
-from tippetop.mechanics.contacts.slip_variables import is_slipping, size
+from tippetop.mechanics.contacts.slip_variables import is_slipping, size, slip_of
 from tippetop.mechanics.field import OuterField
 from tippetop.mechanics.laws.coulomb import RollingResistance
-from tippetop.mechanics.motion import along_table, on_table, sliding_contact
+from tippetop.mechanics.motion import (
+    along_table,
+    angular_velocity,
+    on_table,
+    sliding_contact,
+)
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull, sizes
 from tippetop.mechanics.top import Top, natural_state, natural_units
@@ -29,7 +34,7 @@ from tippetop.problem.contact_rules import Contact
 from tippetop.problem.frictions import LEAST_PATCH, Friction
 from tippetop.problem.launch import Launch
 from tippetop.problem.table import Table
-from tippetop.support.errors import MISSING, InvalidInput, require
+from tippetop.support.errors import MISSING, Described, InvalidInput, require
 from tippetop.support.field_paths import (
     dotted_names,
     is_place,
@@ -53,6 +58,11 @@ from tippetop.support.validation import (
     fields_of_kind,
     kinds_with,
 )
+
+EXTREME = 1e100
+"""Number, and its inverse, beyond which an overflow is blamed on a number of the problem and not
+on its friction law: numbers less extreme overflow in the fourth power only.
+"""
 
 
 class Problem(Part):
@@ -104,6 +114,7 @@ class Problem(Part):
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
         _require_fitting_patch(self)
+        _require_finite_friction(self)
         if not (math.isfinite(_resistance(self)) and math.isfinite(_largest_square(self))):
             raise _overflow_refusal(self)
         if self.contact.liftoff == "fly":
@@ -392,6 +403,35 @@ def _resistance(problem: Problem) -> float:
         return float(touch.delassus + 0.0 * touch.free_acceleration)
     except ArithmeticError:
         return math.nan
+
+
+def _require_finite_friction(problem: Problem) -> None:
+    """Raise `InvalidInput` for a law without a finite force at the launch, such as one that divides
+    0 by 0 where nothing slips, if no number of the problem is so extreme as to be the reason.
+    """
+    numbers = [abs(number) for _, number in numbers_of(problem.model_dump()) if number]
+    if min(numbers) < 1.0 / EXTREME or max(numbers) > EXTREME:
+        return
+    (axis, momentum, velocity), top = along_table(problem.start()), problem.standing()
+    if is_set_valued(top.friction):
+        return
+    slip = slip_of(axis, momentum, velocity, top)[:2]
+    if not is_slipping(axis, momentum, velocity, top):
+        slip = (0.0, 0.0)
+    try:
+        traction = top.friction.traction(slip, angular_velocity(axis, momentum, top))
+        if math.isfinite(sum([*traction.force, *traction.torque])):
+            return
+    except ArithmeticError:
+        pass
+    raise InvalidInput(
+        "friction",
+        Described(f"the law {problem.friction.kind}"),
+        "",
+        f"has no finite force at the slip speed of the launch, {size(slip):.4g} m/s",
+        "let the law have one at every slip, and be 0 without slip: divide by sqrt(v^2 + s^2)"
+        " instead of the slip speed v, with a small speed s",
+    )
 
 
 def _largest_square(problem: Problem) -> float:

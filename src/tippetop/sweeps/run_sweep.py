@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from tippetop.problem.implausible import warn
 from tippetop.problem.problem import Problem
 from tippetop.results.flags import decoded
 from tippetop.support.errors import Described, InvalidInput, require
+from tippetop.support.progress_bar import Tell, progress_bar
 from tippetop.support.validation import require_callback
 from tippetop.sweeps.contents import (
     components_of,
@@ -51,6 +53,16 @@ class Progress:
 
 
 Callback = Callable[[Progress], None]
+
+
+def shown_by(tell: Tell) -> Callback:
+    """Return a callback that shows the progress of a sweep by a progress bar."""
+
+    def show(now: Progress) -> None:
+        rate = f" {now.rate:,.0f} launches/s" if now.rate else ""
+        tell(now.done, now.cells, f"{now.done:,} of {now.cells:,}{rate}")
+
+    return show
 
 
 def _carry_out(
@@ -167,6 +179,7 @@ def sweep(
     workers: int | None = None,
     scheduler: str | None = None,
     callback: Callback | None = None,
+    progress: bool = True,
     decode: bool = True,
 ) -> xr.Dataset:
     """See what becomes of many launches: ``sweep(problem, {"launch.spin": np.linspace(0, 250,
@@ -220,6 +233,9 @@ def sweep(
         Address of a running dask.distributed scheduler, instead of processes.
     callback
         Told of the progress, at the beginning and after every task.
+    progress
+        Show progress and the time left in a terminal and below the cell of a notebook, unless a
+        `callback` is told of it.
     decode
         Give outcomes, and all else that is flags, as words; False for their numbers, which take a
         byte a launch (see `Outcome`).
@@ -273,7 +289,8 @@ def sweep(
         times=times,
     )
     require_callback("callback", callback)
-    require("decode", decode, bool, "True or False")
+    for name, flag in {"progress": progress, "decode": decode}.items():
+        require(name, flag, bool, "True or False")
     for field, functions in {"events": events, "until": until}.items():
         if functions is not None:
             fault = "is not followed in sweeps"
@@ -291,10 +308,12 @@ def sweep(
         )
     if doubt := implausible_cells(chosen):
         warn(doubt)
-    if out is None:
-        swept = compute(chosen, workers=workers, scheduler=scheduler, callback=callback)
-        return decoded(swept) if decode else swept
-    with need_workers(chosen, workers, scheduler) as cluster:
-        store = Store.resume(out, chosen) if resume else Store.create(out, chosen, overwrite)
-        fill(store, workers=workers, scheduler=cluster, callback=callback)
+    with progress_bar() if progress and callback is None else nullcontext() as tell:
+        callback = callback if tell is None else shown_by(tell)
+        if out is None:
+            swept = compute(chosen, workers=workers, scheduler=scheduler, callback=callback)
+            return decoded(swept) if decode else swept
+        with need_workers(chosen, workers, scheduler) as cluster:
+            store = Store.resume(out, chosen) if resume else Store.create(out, chosen, overwrite)
+            fill(store, workers=workers, scheduler=cluster, callback=callback)
     return decoded(store.dataset()) if decode else store.dataset()
