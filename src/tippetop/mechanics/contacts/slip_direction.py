@@ -3,7 +3,11 @@
 Under dry friction the rate A of a velocity xi depends on its direction e = xi / s alone. Friction
 takes energy, so that e -> c e + A(e), normalized, comes to such a direction if c is large enough.
 It comes there slowly where one component of xi responds much less than another to what resists it,
-such as drilling of a small patch: Newton's method ends the search.
+such as drilling of a small patch: Newton's method ends the search. And it circles where friction
+nearly holds xi, or one of two contacts hardly slips, so that the least change of e turns friction.
+Damped steps for x = R e, of which x = A(x / |x|), come out of that: under given normal forces x is
+the least point of a convex function, and |x - A| falls along every such step but where friction has
+a kink.
 """
 
 from collections.abc import Callable, Sequence
@@ -14,7 +18,7 @@ from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import solve
 
-ROUNDS = 100
+ROUNDS = 20
 """Rounds of the search at most."""
 
 ITERATIONS = 50
@@ -23,14 +27,24 @@ ITERATIONS = 50
 NEWTON_STEPS = 12
 """Steps of Newton's method that try to end a round."""
 
+DAMPED_STEPS = 50
+"""Damped steps of Newton's method in a round at most."""
+
+SHORTEST = 1e-6
+"""Part of a step of Newton's method below which none is tried: where friction has a kink, no part
+of it leads nearer.
+"""
+
 EXACT = 4e-16
 """Change of a direction that is rounding."""
 
 DIRECTED = 1e-9
 """How well a direction must be known at least."""
 
-DIFFERENCE = 1e-7
-"""Difference of two directions from which a derivative is found; its error costs steps, no digits.
+DIFFERENCE = 1e-9
+"""Difference of a direction to both sides from which a derivative is found; its error costs steps,
+no digits. Much larger, it is more than the slip of one of two contacts that hardly slips; much
+smaller, rounding is as large as what differs.
 """
 
 
@@ -77,6 +91,8 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
                     return before
                 break
         improved = _improved(response, ways)
+        if improved is None:
+            improved = _improved(response, _descended(response, ways))
         if improved is not None:
             return improved
         # Exactly against what drives it, as may be in a plane, a direction stays so: it is turned
@@ -120,6 +136,57 @@ def _improved(response: Response, ways: list[Slip]) -> list[Slip] | None:
     return None
 
 
+def _descended(response: Response, ways: Sequence[Slip]) -> list[Slip]:
+    """Return directions that are nearer to some that do not turn, by damped steps of Newton's
+    method for the velocities x = R e.
+    """
+    sizes = [len(e) for e in ways]
+
+    def parts(x: Slip) -> list[Slip]:
+        velocities, first = list[Slip](), 0
+        for count in sizes:
+            velocities.append(x[first : first + count])
+            first += count
+        return velocities
+
+    def excess(x: Slip) -> Slip:
+        """Return x - A(x / |x|)."""
+        rates = [number for one in response([_unit(e) for e in parts(x)]) for number in one.rate]
+        return tuple([number - rate for number, rate in zip(x, rates, strict=True)])
+
+    rated = [scaled(size(one.rate), e) for one, e in zip(response(ways), ways, strict=True)]
+    x: Slip = tuple([float(number) for velocity in rated for number in velocity])
+    present = excess(x)
+    for _ in range(DAMPED_STEPS):
+        if size(present) < DIRECTED * size(x):
+            break
+        nearer = _nearer(excess, x, present)
+        if nearer is None:
+            break
+        x, present = nearer
+    return [_unit(e) for e in parts(x)]
+
+
+def _nearer(function: Callable[[Slip], Slip], x: Slip, values: Slip) -> tuple[Slip, Slip] | None:
+    """Return a place at which a function is smaller than at x, and its values there, by a damped
+    step of Newton's method; None if there is none.
+    """
+    try:
+        step = solve(
+            _derivatives(function, x, DIFFERENCE * size(x)), [-number for number in values]
+        )
+        part = 1.0
+        while part > SHORTEST:
+            trial: Slip = tuple([a + part * b for a, b in zip(x, step, strict=True)])
+            beyond = function(trial)
+            if size(beyond) < (1.0 - 0.1 * part) * size(values):
+                return trial, beyond
+            part *= 0.5
+    except ArithmeticError:
+        return None
+    return None
+
+
 def _grow(responses: Sequence[Resisted], ways: Sequence[Slip]) -> bool:
     """Return whether velocities in these directions grow, or stay."""
     return all(
@@ -136,15 +203,15 @@ def _newton(response: Response, ways: Sequence[Slip]) -> list[Slip]:
     """Return the directions after one Newton step towards directions that do not turn."""
     bases = [tangents(e) for e in ways]
 
-    def across(ways: Sequence[Slip]) -> list[float]:
+    def across(ways: Sequence[Slip]) -> Slip:
         responses = response(ways)
         across_rates = [
             plus(resisted.rate, scaled(-inner(resisted.rate, e), e))
             for resisted, e in zip(responses, ways, strict=True)
         ]
-        return [
-            inner(rate, b) for rate, basis in zip(across_rates, bases, strict=True) for b in basis
-        ]
+        return tuple(
+            [inner(rate, b) for rate, basis in zip(across_rates, bases, strict=True) for b in basis]
+        )
 
     def moved(parts: Sequence[float]) -> list[Slip]:
         turned_ways, used = list[Slip](), 0
@@ -157,14 +224,19 @@ def _newton(response: Response, ways: Sequence[Slip]) -> list[Slip]:
         return turned_ways
 
     present = across(ways)
-    count = len(present)
-    columns = []
-    for j in range(count):
-        displaced = across(moved([DIFFERENCE if i == j else 0.0 for i in range(count)]))
-        columns.append([(displaced[i] - present[i]) / DIFFERENCE for i in range(count)])
-    return moved(
-        solve([[column[i] for column in columns] for i in range(count)], [-x for x in present])
-    )
+    zero: Slip = tuple([0.0 for _ in present])
+    rows = _derivatives(lambda parts: across(moved(parts)), zero, DIFFERENCE)
+    return moved(solve(rows, [-x for x in present]))
+
+
+def _derivatives(function: Callable[[Slip], Slip], x: Slip, reach: float) -> list[list[float]]:
+    """Return the derivatives of each value of a function by each number, by differences."""
+    columns = list[list[float]]()
+    for j in range(len(x)):
+        ahead = function(tuple([x[i] + (reach if i == j else 0.0) for i in range(len(x))]))
+        behind = function(tuple([x[i] - (reach if i == j else 0.0) for i in range(len(x))]))
+        columns.append([0.5 * (a - b) / reach for a, b in zip(ahead, behind, strict=True)])
+    return [[column[i] for column in columns] for i in range(len(columns[0]))]
 
 
 def _apart(ways: Sequence[Slip], others: Sequence[Slip]) -> float:
