@@ -57,6 +57,7 @@ REPLACED = {
 
 PLAIN_ENGLISH = {
     "tt.least_jellett_to_stand",
+    "tt.least_straight_spin",
     "tt.Launch.from_euler",
     "tt.extend.Automaton.lift_off",
 }

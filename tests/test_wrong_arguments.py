@@ -29,6 +29,8 @@ OF_A_PROBLEM = {
     "predict": tt.predict,
     "standing_time": tt.standing_time,
     "steady_states": tt.steady_states,
+    "spectrum": lambda wrong: tt.spectrum(wrong, tt.steady_states(PROBLEM)[0]),
+    "least_straight_spin": tt.least_straight_spin,
 }
 OF_A_RUN = {
     "plot": tt.plot,

@@ -78,6 +78,9 @@ from .theory.drilling import standing_time as standing_time
 from .theory.overview import steady_states as steady_states
 from .theory.prediction import Prediction as Prediction
 from .theory.prediction import predict as predict
+from .theory.spectra import least_straight_spin as least_straight_spin
+from .theory.spectra import spectrum as spectrum
+from .theory.stability import Spectrum as Spectrum
 from .theory.steady import SteadyState as SteadyState
 from .theory.stem import least_jellett_to_stand as least_jellett_to_stand
 from .theory.thresholds import CriticalSpins as CriticalSpins

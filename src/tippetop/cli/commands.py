@@ -18,6 +18,7 @@ from tippetop.cli.problem import problem
 from tippetop.cli.reference import reference
 from tippetop.cli.reproduce import reproduce
 from tippetop.cli.simulate import simulate
+from tippetop.cli.steady import steady
 from tippetop.cli.sweep import sweep
 from tippetop.support.errors import (
     OTHER_OUT,
@@ -90,6 +91,7 @@ for command in (
     simulate,
     reproduce,
     critical,
+    steady,
     sweep,
     fit,
     lab,

@@ -99,7 +99,10 @@ RESISTED = (
     "Rolling resistance stops an axis that moves slowly, and takes energy from every precession:"
     " there are no critical spins. Without it there are: try --set rolling_resistance=0."
 )
-FLAT = "This body lies flat when its axis is vertical: it has no vertical spin."
+FLAT = (
+    "This body lies flat when its axis is vertical: it has no vertical spin. `tippetop steady`"
+    " shows the circles in which it rolls."
+)
 
 
 def _sentences(outlook: "Outlook") -> Iterator[Any]:

@@ -3,6 +3,7 @@
 Read `steady` first: steady states and Jellett's integral. `stability`, `thresholds` and `groups`
 say which of them are stable, and `prediction` where a launch ends. `nutation`, `dissipation`,
 `nutation_decay`, `averaging` and `slow_time` have the slow flow under weak friction. `level`,
-`sleeping`, `stem`, `drilling` and `resting_center` treat other bodies and friction; `overview`,
-`prospects` and `advice` collect the results for people.
+`rolling` has circles and straight lines of bodies whose contact sticks, and `spectra` judges single
+states. `sleeping`, `stem`, `drilling` and `resting_center` treat other bodies and friction;
+`overview`, `prospects` and `advice` collect the results for people.
 """

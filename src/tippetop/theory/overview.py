@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 from tippetop.mechanics.surfaces.hull import Hull, is_edge
 from tippetop.mechanics.surfaces.surface import SphereSurface
@@ -23,6 +24,7 @@ from tippetop.theory.prediction import (
 )
 from tippetop.theory.requirements import creeps, require_no_field, sticks
 from tippetop.theory.resting_center import RestingCenter, resting_center_on
+from tippetop.theory.rolling import rolling_states
 from tippetop.theory.sleeping import Sleeping, sleeping
 from tippetop.theory.stability import Spectrum, fastest_growth, has_spectrum, spectrum
 from tippetop.theory.steady import (
@@ -261,18 +263,57 @@ def _outlook_of_several_surfaces(problem: Problem) -> Outlook:
     )
 
 
-def steady_states(problem: Problem) -> list[SteadyState[float]]:
-    """Return the steady states that a launch might end in, by increasing tilt.
+def steady_states(
+    problem: Problem,
+    *,
+    tilt: Any = None,
+    rate: Any = None,
+    radius: Any = None,
+    spin: Any = None,
+) -> list[SteadyState[float]]:
+    """Return the steady states that a launch might end in, or those with some numbers, by tilt.
 
-    They are all those with its Jellett's integral or, if that is not conserved, both vertical spins
-    with its axial spin and the level spin with its precession. Those of a body of several surfaces
-    are on the surface that it is launched on, at tilts where no other touches. A body that lies
-    flat when its axis is vertical has none.
+    Without numbers they are all those with the launch's Jellett's integral or, if that is not
+    conserved, both vertical spins with its axial spin and the level spin with its precession. Those
+    of a body of several surfaces are on the surface that it is launched on, at tilts where no other
+    touches. A body that lies flat when its axis is vertical has none.
+
+    With one or two of the four numbers they are the motions in which the body rolls without slip
+    at constant tilt, on any one of its surfaces, whatever the launch: its centre of mass rests
+    where only one number is stated, and otherwise goes round a circle or straight on. A sharp tip
+    stays at its place, and its states are the steady precessions of the heavy top.
+
+    Parameters
+    ----------
+    problem
+        The body, its friction and gravity, and the launch.
+    tilt
+        Tilt of the axis, rad, more than 0 and less than pi.
+    rate
+        Rate of the axis about the vertical (precession), rad/s; 0, beside a spin, for rolling
+        straight.
+    radius
+        Radius of the circle of the centre of mass, m; 0 for one that rests, inf for rolling
+        straight.
+    spin
+        Axial spin omega3, rad/s.
+
+    Returns
+    -------
+    list of SteadyState
+        With its tilt, precession and spin each is a launch. Beside every state with a tilt and a
+        radius there is its mirror image, with the opposite rates.
 
     Raises
     ------
     InvalidInput
-        If the launch turns too fast for the theory, the table slopes, or there is air.
+        If the launch turns too fast for the theory, the table slopes, or there is air. Of circles
+        also if friction cannot hold the contact, and of numbers if they are no one or two of these.
+
+    Notes
+    -----
+    Two of the four numbers determine the others by the balance of moments of
+    `tippetop.theory.rolling` (E. J. Routh, Advanced Rigid Dynamics, 1905, sections 243-244).
 
     Examples
     --------
@@ -282,8 +323,20 @@ def steady_states(problem: Problem) -> list[SteadyState[float]]:
     upright 0.0 49.6
     precession 1.504 -8.2
     inverted 3.142 -26.7
+
+    A coin that rolls round a circle of 30 cm, in seconds a turn, and with what friction:
+
+    >>> coin = tt.presets.report_problem().replace(
+    ...     {"body": tt.presets.COIN, "friction": {"kind": "coulomb", "mu": 0.5}}
+    ... )
+    >>> (state,) = tt.steady_states(coin, tilt="70 deg", radius="30 cm")
+    >>> round(6.2832 / state.precession, 3), round(state.friction, 3)
+    (2.655, 0.171)
     """
     require_problem(problem)
+    numbers = {"tilt": tilt, "rate": rate, "radius": radius, "spin": spin}
+    if any(number is not None for number in numbers.values()):
+        return rolling_states(problem, **numbers)
     require_no_field(top_of(problem))
     if isinstance(top_of(problem).surface, Hull):
         hull = hull_of(problem)

@@ -36,7 +36,7 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.theory.derivatives import derivative, jacobian
-from tippetop.theory.requirements import creeps, require_creep
+from tippetop.theory.requirements import creeps, require_creep, sticks
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
     SteadyKind,
@@ -73,7 +73,15 @@ other terms of the Jacobian are lost in rounding.
 
 @dataclass(frozen=True)
 class Spectrum:
-    """Eigenvalues of the linear motion about a steady state, without its neutral directions."""
+    """Eigenvalues of the linear motion about a steady state, without its neutral directions.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> top = tt.presets.report_problem(spin=155.0)
+    >>> [(state.kind.value, tt.spectrum(top, state).stable) for state in tt.steady_states(top)]
+    [('upright', False), ('inverted', True)]
+    """
 
     eigenvalues: Complex
     """1/s, by decreasing real part: 5 for a precession, 6 for a vertical spin."""
@@ -148,7 +156,7 @@ def vertical_growth_rates(kind: SteadyKind, top: Top, spins: Array) -> Array:
 
 def has_spectrum(kind: SteadyKind, top: Top) -> bool:
     """Return whether the motion about steady states of a kind is linear: see `spectrum`."""
-    return creeps(top) and (kind in VERTICAL_SPINS or top.friction.torque_free)
+    return creeps(top) if kind in VERTICAL_SPINS else top.torque_free and not sticks(top)
 
 
 def fastest_growth(kind: SteadyKind, top: Top, spin: float) -> float:
@@ -203,13 +211,14 @@ def _linear(
     k).
     """
     units = Units(*(float(unit) for unit in natural_units(top)))
-    if kind not in VERTICAL_SPINS and not top.friction.torque_free:
+    if kind not in VERTICAL_SPINS and not has_spectrum(kind, top):
         raise InvalidInput(
             "friction",
             Described("this law"),
-            "one without torque: no precession is steady under this one",
+            "one without torque, by which slip never ends: no other has a linear motion about a"
+            " precession",
         )
-    scaled = natural(drilling(top, spin))
+    scaled = natural(drilling(top, spin) if kind in VERTICAL_SPINS else top)
     angles = Angles(tilt, 0.0, 0.0, precession * units.time, spin * units.time, (0.0, 0.0))
     state = state_from_angles(angles, scaled, np)
     eight = (*state.axis, *state.momentum, *state.velocity)

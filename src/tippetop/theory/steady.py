@@ -41,6 +41,10 @@ class SteadyKind(StrEnum):
     PRECESSION = "precession"
     LEVEL = "level"
     """Axis horizontal, no axial spin, any precession: for shapes that are the same at both ends."""
+    CIRCLE = "circle"
+    """Rolling without slip while the centre of mass goes round a circle."""
+    STRAIGHT = "straight"
+    """Rolling without slip along a straight line."""
 
 
 VERTICAL_SPINS = (SteadyKind.UPRIGHT, SteadyKind.INVERTED)
@@ -73,6 +77,11 @@ class SteadyState(Generic[Number]):
     """Jellett's integral lambda, kg m^3/s."""
     energy: Number
     """Energy, J, in the convention of `tippetop.mechanics.invariants.energy`."""
+    radius: float = 0.0
+    """Radius of the circle of the centre of mass, m: 0 where it rests, inf where it moves straight.
+    """
+    friction: float = 0.0
+    """Least coefficient of static friction that holds the contact; 0 where no friction acts."""
 
 
 class RollingPrecession(NamedTuple):

@@ -1,0 +1,125 @@
+"""`tippetop steady`: steady motions with a tilt, a rate, a radius or a spin."""
+
+import math
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from tippetop.cli.options import Choice, Json, of_a_problem
+from tippetop.cli.terminal import facts, listing, show, show_json, spelled
+from tippetop.support.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from tippetop.problem.problem import Problem
+    from tippetop.theory.stability import Spectrum
+    from tippetop.theory.steady import SteadyState
+
+At = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--at",
+        metavar="NAME=VALUE",
+        help=(
+            "Number of the steady motions: tilt, rate, radius or spin, as in tilt=45deg or"
+            " radius=20cm. Two of them, or one for a centre of mass that rests; without, those"
+            " that the launch may end in."
+        ),
+    ),
+]
+NAMES = ("tilt", "rate", "radius", "spin")
+
+
+@of_a_problem
+def steady(choice: Choice, at: At = None, as_json: Json = False) -> None:
+    """Show steady motions of a body, such as a coin's that rolls round a circle, and which last."""
+    from tippetop.theory.overview import steady_states  # noqa: PLC0415 - slow to import
+
+    problem = choice.problem()
+    states = steady_states(problem, **_numbers(at or []))
+    judged = [(state, _spectrum(problem, state)) for state in states]
+    straight = _straight(problem)
+    if as_json:
+        entries = [{**vars(state), **_plain(linear)} for state, linear in judged]
+        show_json(
+            {
+                "steady_states": entries,
+                "least_straight_spin": straight,
+                "problem": problem.model_dump(),
+            }
+        )
+        return
+    if judged:
+        headings = ("kind", "tilt", "rate", "spin", "radius", "friction", "", "time")
+        rows = (_row(state, linear) for state, linear in judged)
+        show(listing("Steady motions", headings, rows, words=("kind", "")))
+        show(
+            "[dim]rad, rad/s, m; friction: least coefficient that holds the contact; time: s in"
+            " which a small disturbance grows e times or, where none grows, of its slowest"
+            " oscillation.[/]"
+        )
+    else:
+        show("No motion with these numbers is steady.")
+    if straight is not None:
+        name = "rolls straight on its edge above"
+        show(facts([(name, spelled(straight, 6), "rad/s" if math.isfinite(straight) else "")]))
+
+
+def _numbers(at: list[str]) -> dict[str, Any]:
+    """Return the numbers of `--at NAME=VALUE`."""
+    numbers: dict[str, Any] = {}
+    for word in at:
+        name, _, value = word.partition("=")
+        if name not in NAMES or not value or name in numbers:
+            raise InvalidInput("--at", word, "NAME=VALUE, once each, of tilt, rate, radius, spin")
+        try:
+            numbers[name] = float(value)
+        except ValueError:
+            numbers[name] = value
+    return numbers
+
+
+def _spectrum(problem: "Problem", state: "SteadyState[float]") -> "Spectrum | None":
+    """Return the spectrum of a state; None where it has no linear motion."""
+    from tippetop.theory.spectra import spectrum  # noqa: PLC0415 - slow to import
+
+    try:
+        return spectrum(problem, state)
+    except InvalidInput:
+        return None
+
+
+def _straight(problem: "Problem") -> float | None:
+    """Return the least spin of straight rolling, rad/s; None for a body that does not roll so."""
+    from tippetop.theory.spectra import least_straight_spin  # noqa: PLC0415 - slow to import
+
+    try:
+        return least_straight_spin(problem)
+    except InvalidInput:
+        return None
+
+
+def _plain(spectrum: "Spectrum | None") -> dict[str, Any]:
+    """Return a spectrum as plain data; null where there is none."""
+    if spectrum is None:
+        return dict.fromkeys(("growth_rate", "stable", "unstable", "eigenvalues"))
+    return {
+        "growth_rate": spectrum.growth_rate,
+        "stable": spectrum.stable,
+        "unstable": spectrum.unstable,
+        "eigenvalues": [[value.real, value.imag] for value in spectrum.eigenvalues.tolist()],
+    }
+
+
+def _row(state: "SteadyState[float]", spectrum: "Spectrum | None") -> tuple[str, ...]:
+    """Return a state's row of the table."""
+    numbers = [spelled(value, 6) for value in (state.tilt, state.precession, state.spin)]
+    radius = spelled(state.radius, 6) if math.isfinite(state.radius) else "straight"
+    verdict, time = "", ""
+    if spectrum is not None:
+        verdict = "stable" if spectrum.stable else "unstable" if spectrum.unstable else "lasts"
+        slowest = min(abs(value.imag) for value in spectrum.eigenvalues.tolist())
+        if spectrum.unstable:
+            time = spelled(1.0 / spectrum.growth_rate, 4)
+        elif slowest > 0.0:
+            time = spelled(2.0 * math.pi / slowest, 4)
+    return (state.kind.value, *numbers, radius, spelled(state.friction, 4), verdict, time)
