@@ -78,10 +78,9 @@ def test_a_ball_with_a_flat_stem_is_launched_upright(tilt: float) -> None:
     stem = ball(STEM, tilt=tilt, spin=200.0, tilt_rate=1.0)
     run = tt.simulate(stem, 0.01, samples=3, integrator="dop853", tolerance=1e-10)
     if tilt > 3.0:
-        # Its rim stands still, so that its centre moves at 0.8 m/s: that moves the pressure to it.
-        assert run["event_kind"].values[0] == "lies down"
-    else:
-        assert run.attrs["status"] == "completed"
+        # Its face lands on the table, and being so small rocks on over its other side.
+        assert run["event_kind"].values.tolist() == ["impact"]
+    assert run.attrs["status"] == "completed"
 
 
 def test_a_top_turned_with_a_rim_spins_upright() -> None:

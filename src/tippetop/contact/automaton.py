@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 from tippetop.contact.closed_contacts import ClosedContacts
-from tippetop.contact.collision import collision
+from tippetop.contact.collision import SLOWEST_REBOUND, collision
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_on_two
+from tippetop.contact.face_impact import LEAN, SLOWEST_ON_FACE, face_impact
 from tippetop.contact.face_mode import STOPPED, TIPPING, FaceMode
 from tippetop.contact.flight import LANDING, TOUCHING, Flight, Start
 from tippetop.contact.guards import (
@@ -53,7 +54,7 @@ from tippetop.contact.slip_end_motion import (
 from tippetop.contact.slip_onset import ENDED, ONSET_OVER, UNSEEN, SlipOnset
 from tippetop.contact.soonest_end import on_present_branch, rolls_freely, soonest_end
 from tippetop.contact.surfaces import FACE, TOUCH, WOBBLE, lands_flat, lies_flat
-from tippetop.contact.tip_onset import TILTED, TipOnset
+from tippetop.contact.tip_onset import BARELY_TILTED, TILTED, TipOnset
 from tippetop.contact.touching import (
     SLOWEST_ROCKING,
     gap_acceleration,
@@ -90,7 +91,10 @@ from tippetop.mechanics.face_motion import (
     law_of_face,
     lying_flat,
     pressure_reserve,
+    rim_speed,
+    sinking_rim,
     tipping_direction,
+    turning_of_face,
 )
 from tippetop.mechanics.flight.free_motion import gap, gap_rate
 from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
@@ -100,14 +104,11 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull, is_edge
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.unsolved import Unsolved
-from tippetop.mechanics.vectors import Scalar
+from tippetop.mechanics.vectors import Horizontal, Scalar
 from tippetop.support.errors import Described, InvalidInput
 
 REST = 1e-13
 """Velocities and accelerations, in natural units, that are rounding in a body at rest."""
-
-SLOWEST_ON_FACE = 1e-10
-"""Velocity, in natural units, with which slip on a face begins: its energy is below rounding."""
 
 MOST_IN_TURNS = 200
 """Impacts at one instant, now of one surface and now of another, after which a run is given up."""
@@ -173,6 +174,14 @@ class Automaton:
         """Return the mode in which a face closes onto the table, slapping or wobbling down."""
         moving = contact_mode_of(mode, end)
         return Transition((), SettlingFlat(moving.top, moving, slaps=slaps), end.state)
+
+    def _after_settling(self, mode: Mode, end: ModeEnd, time: float) -> Transition:
+        """Return what follows where a face has come down onto the table."""
+        assert isinstance(mode, SettlingFlat)
+        contact = off_branch(mode.top)
+        if mode.slaps:
+            return self.strike_face(contact, time, end.state, ())
+        return self.lie_down(contact, time, end.state, (), lands=True)
 
     def _after_flight(self, contact: Top, end: ModeEnd, time: float) -> Transition:
         """Return what follows where a surface lands."""
@@ -538,17 +547,51 @@ class Automaton:
     # A face.
 
     def lie_down(
-        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+        self,
+        contact: Top,
+        time: float,
+        state: State,
+        events: tuple[Event, ...],
+        *,
+        lands: bool = False,
     ) -> Transition:
-        """Go on on the face of the active edge, onto which the body comes without rebound, or on
-        which it lies.
+        """Go on on the face of the active edge, on which the body lies, or comes to lie if it
+        `lands` there.
         """
         flat = lying_flat(state, contact)
-        if flat == state:
+        if flat == state and not lands:
             return self.on_face(contact, time, flat, events)
         lost = float(energy(state, contact) - energy(flat, contact))
         event = Event(EventKind.LIES_DOWN, time, energy_lost=lost, surface=contact.number)
         return self.on_face(contact, time, flat, (*events, event))
+
+    def strike_face(
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
+        """Collide with the face of the active edge, and go on as the impact leaves the body."""
+        law_type = law_of_face(contact, self.face_pressure)
+        if law_type is None:
+            return self.lie_down(contact, time, state, events)
+        try:
+            struck = face_impact(state, self.restitution, contact, law_type)
+        except ArithmeticError as error:
+            return failed("The impulse of the impact", error, state, events)
+        hit = Event(
+            EventKind.IMPACT, time, struck.impulse, struck.energy_lost, contact.number, struck.steps
+        )
+        if struck.rebounds:
+            return Transition((*events, hit), Flight(contact, Start.REBOUND), struck.state)
+        return self.from_flat(contact, time, struck.state, (*events, hit))
+
+    def from_flat(
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
+        """Go on from an impact of a face without rebound: rock on over the rim, or lie down."""
+        if rim_speed(state.momentum, contact) <= SLOWEST_REBOUND:
+            return self.lie_down(contact, time, state, events, lands=True)
+        x, y = sinking_rim(turning_of_face(state.momentum, contact))
+        up = state.axis[2]
+        return self._onto_rim(contact, time, state, (up * x, up * y), events)
 
     def on_face(
         self, contact: Top, time: float, state: State, events: tuple[Event, ...]
@@ -598,12 +641,40 @@ class Automaton:
             )
             return Transition(events, Status.FAILED, state, detail)
         event = Event(EventKind.TIPS, time, surface=contact.number)
+        return self._onto_rim(contact, time, state, direction, (*events, event))
+
+    def _onto_rim(
+        self,
+        contact: Top,
+        time: float,
+        state: State,
+        direction: Horizontal,
+        events: tuple[Event, ...],
+    ) -> Transition:
+        """Return the mode in which the axis begins to lean into a direction: the rim slips, or
+        sticks if friction can hold it.
+        """
+        x, y = direction
+        touching = state._replace(axis=(LEAN * x, LEAN * y, state.axis[2]))
         edge = ContactMode(contact, pulls=self.pulls)
-        return Transition((*events, event), TipOnset(contact, edge, direction), state)
+        if not is_set_valued(contact.friction) or is_slipping(*along_table(touching), contact):
+            return Transition(events, TipOnset(contact, edge, direction), state)
+        barely = state._replace(axis=(BARELY_TILTED * x, BARELY_TILTED * y, state.axis[2]))
+        resolved = self.resolve(contact, time, barely, (True, False), events=events)
+        following = resolved.next
+        if isinstance(following, ContactMode):
+            onset = TipOnset(contact, following, direction)
+            return replace(resolved, next=onset, state=state)
+        if isinstance(following, Flight):
+            return replace(resolved, state=state)
+        return resolved
 
     def _after_tipping(self, mode: Mode, end: ModeEnd) -> Transition:
         """Return the mode of a body that has tipped over its rim."""
-        return Transition((), self.mode_for(off_branch(mode.top), end.state, slips=True), end.state)
+        assert isinstance(mode, TipOnset)
+        slips = not mode.contact_mode.sticks[0]
+        following = self.mode_for(off_branch(mode.top), end.state, slips=slips)
+        return Transition((), following, end.state)
 
     # Leaving the table, and impacts.
 
@@ -635,7 +706,7 @@ class Automaton:
         """Collide, unless with a face, and go on as the impact leaves the top."""
         reported = (Event(EventKind.TOUCHDOWN, time, surface=contact.number),)
         if lands_flat(contact, state.axis):
-            return self.lie_down(contact, time, state, reported)
+            return self.strike_face(contact, time, state, reported)
         return self._collide(contact, time, state, reported, self.restitution)
 
     def touch(
@@ -880,7 +951,7 @@ Rule: TypeAlias = Callable[[Automaton, Mode, ModeEnd, float], Transition]
 RULES: dict[str, Rule] = {
     COMPLETED: lambda rules, mode, end, time: Transition((), Status.COMPLETED, end.state),
     FAILURE: lambda rules, mode, end, time: rules._after_failure(mode, end, time),
-    FLAT: lambda rules, mode, end, time: rules.lie_down(off_branch(mode.top), time, end.state, ()),
+    FLAT: lambda rules, mode, end, time: rules._after_settling(mode, end, time),
     STOPPED: lambda rules, mode, end, time: rules._from_rest_on_face(mode.top, time, end.state, ()),
     TILTED: lambda rules, mode, end, time: rules._after_tipping(mode, end),
     TIPPING: lambda rules, mode, end, time: rules._tip(mode.top, time, end.state, ()),

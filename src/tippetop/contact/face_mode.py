@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 from tippetop.contact.mode import COMPLETED, FAILURE, IntegratedMode, ModeEnd, Reaction, Segment
 from tippetop.contact.transient import straight
@@ -59,6 +59,8 @@ class FaceMode(IntegratedMode):
     """Whether the face slips or drills; else friction holds it."""
 
     name: ClassVar[str] = "face"
+    further: ClassVar[int] = 0
+    """How many parameters it has beside the numbers of the top."""
 
     @property
     def status(self) -> str:
@@ -79,6 +81,10 @@ class FaceMode(IntegratedMode):
     def motion(self) -> Motion:
         """Equations of motion and guards, in units of velocity and time that are a parameter."""
         return face_motion(self.without_tops(), self.top.kind)
+
+    def with_numbers(self, kind: Kind, numbers: Sequence[Scalar]) -> Self:
+        """Return the mode of tops of a kind whose parameters are these numbers."""
+        return self.on_tops((kind.top(tuple(numbers[: kind.numbers])),))
 
     def numbers(self, state: State) -> tuple[Scalar, ...]:
         """Return axis, angular momentum and velocity."""
@@ -190,12 +196,13 @@ def face_motion(form: Any, kind: Kind) -> Motion:
 
     The last parameter is the unit of velocity and time. Rates of velocities have no unit then.
     """
+    count = kind.numbers + form.further
 
     def mode(numbers: Sequence[Scalar]) -> Any:
-        return form.on_tops((kind.top(tuple(numbers[: kind.numbers])),))
+        return form.with_numbers(kind, numbers)
 
     def in_natural_units(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Row:
-        unit = numbers[kind.numbers]
+        unit = numbers[count]
         return tuple([each if number < 3 else unit * each for number, each in enumerate(y)])
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
@@ -214,4 +221,4 @@ def face_motion(form: Any, kind: Kind) -> Motion:
     if is_set_valued(kind.example.friction):
         guards.append(Guard(SLOWED, slowed))
     size = len(SlidingState((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0)).pack())
-    return Motion(rates, size, kind.numbers + 1, tuple(guards), form.lasting)
+    return Motion(rates, size, count + 1, tuple(guards), form.lasting)

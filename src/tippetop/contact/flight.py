@@ -12,7 +12,7 @@ from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.integrators.opening import opening
 from tippetop.mechanics.flight.free_motion import free_rates, gap, gap_rate
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import each_surface, is_edge
+from tippetop.mechanics.surfaces.hull import acting, each_surface, is_edge
 from tippetop.mechanics.surfaces.surface import Surface, gap_guard, support_at
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row, Scalar, length
@@ -85,11 +85,18 @@ class Flight(IntegratedMode):
         """
         if all(gap(state, top) > TOUCHING for top in self.top.body.contacts):
             return None
-        counts = list[int]()
+        level, counts = is_level(state), list[int]()
         for top in self.top.body.contacts:
             start = self.start if top.number == self.top.number else start_of(state, top)
-            # The product that is an edge's gap guard vanishes as the gap does, its face's gap not.
-            counts += [int(start), 0] if is_edge(top.surface) else [int(start)]
+            if not is_edge(top.surface) or level:
+                counts.append(int(start))
+            elif gap(state, top) <= TOUCHING and lies_on_face(state, top):
+                # The other factor of the product vanishes, too, as the gap of the face, with t.
+                counts += [int(start) + 1, 1]
+            else:
+                # The product that is an edge's gap guard vanishes as the gap does, its face's gap
+                # does not.
+                counts += [int(start), 0]
         return tuple(counts)
 
     def segments(
@@ -100,16 +107,17 @@ class Flight(IntegratedMode):
         See `tippetop.integrators.opening`.
         """
         vanishing = self.vanishing(state)
+        motion = flight_motion(self.top.body.contacts[0].kind, level=is_level(state))
         if vanishing is not None:
             begin = time, as_array(self.numbers(state))
-            arc = opening(self.motion, self.parameters, begin, end, vanishing)
+            arc = opening(motion, self.parameters, begin, end, vanishing)
             segment = self.segment(arc, end)
             yield segment
             if segment.mode_end is not None:
                 return
             time, state = segment.end_time, segment.end_state
         begin = time, as_array(self.numbers(state))
-        for arc in integrator.integrate(self.motion, self.parameters, begin, end):
+        for arc in integrator.integrate(motion, self.parameters, begin, end):
             yield self.segment(arc, end)
 
     def solution_of(self, arc: Arc) -> DenseSolution:
@@ -131,10 +139,26 @@ class Flight(IntegratedMode):
         return replace(ended, state=last._replace(height=height))
 
 
+def is_level(state: State) -> bool:
+    """Return whether the axis is vertical and stays so: the body turns about it alone."""
+    x, y, _ = state.axis
+    p, q, _ = state.momentum
+    return not any((x, y, p, q))
+
+
+def lies_on_face(state: State, top: Top) -> bool:
+    """Return whether the axis is vertical above the face of the active edge, floats."""
+    edge: Any = acting(top.surface)
+    return bool(edge.lies_flat(state.axis))
+
+
 @lru_cache
-def flight_motion(kind: Kind) -> Motion:
+def flight_motion(kind: Kind, *, level: bool = False) -> Motion:
     """Return the equations of free motion of tops of a kind: of axis, angular momentum, velocity
     and height. Every surface has a guard, its gap.
+
+    Where the axis stays `level`, the gap of an edge is that of its face, of which its own guard is
+    the square: that falls to rounding long before it is zero.
     """
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
@@ -149,7 +173,8 @@ def flight_motion(kind: Kind) -> Motion:
 
     guards = list[Guard]()
     for number, surface in enumerate(each_surface(kind.example.surface)):
-        guards.append(guard(number, surface_gap))
+        if not (is_edge(surface) and level):
+            guards.append(guard(number, surface_gap))
         if is_edge(surface):
             guards.append(guard(number, face_gap))
     return Motion(rates, SIZE, kind.numbers, tuple(guards))

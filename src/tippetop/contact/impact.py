@@ -217,6 +217,36 @@ def impact(
     return _impact_of(body, impulse, compression, steps, process.stilled(impulse, status))
 
 
+def restored_impact(
+    state: State, impulse: float, top: Top, integrator: Integrator | None = None
+) -> Impact:
+    """Return what a normal impulse of restitution does to a body that touches the table at one
+    contact.
+
+    Parameters
+    ----------
+    state
+        The state before, floats.
+    impulse
+        The normal impulse, N s.
+    top
+        The body and the friction law, floats.
+    integrator
+        As `impact` takes it.
+
+    Raises
+    ------
+    ArithmeticError
+        If it takes too many steps, or friction can neither hold slip that has ended nor let it go
+        on.
+    """
+    body = StruckBody.of(state, (top,))
+    process = ImpactProcess(body, integrator or unnamed_integrator())
+    full = impulse / (body.units.mass * body.units.speed)
+    total, status, steps = process.driven(full)
+    return _impact_of(body, total, 0.0, steps, process.stilled(total, status))
+
+
 def begins_without_approach(
     state: State, top: Top, beside: Top, integrator: Integrator | None = None
 ) -> bool:
@@ -305,6 +335,12 @@ class ImpactProcess:
             impulse, status, further_steps = self.until_compressed(impulse, status, full)
             steps += further_steps
         return impulse, status, steps
+
+    def driven(self, full: float) -> tuple[Impulse, StruckStatus, int]:
+        """Return the impulse whose normal part is `full`, the status then, and how many steps lead
+        to it.
+        """
+        return self._until(NO_IMPULSE, self.start(), (SPENT,), full)
 
     def after_compression(self, impulse: Impulse, least: float) -> StruckStatus:
         """Return the status of two contacts where restitution begins."""

@@ -2,9 +2,12 @@
 
 At zero tilt the rim's point that touches is undefined. The direction into which the axis leans is
 an unknown of its own here, beside the numbers of the contact mode, at Gauss's points of one step:
-there the lean, integrated, must have that direction. Its size grows as the square of the time.
+there the lean, integrated, must have that direction. Its size grows as the time where the body has
+a rate of tilt already, after an impact; as its square where friction tips it at once; and as its
+cube where the force that tips it grows from the limit.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -22,8 +25,11 @@ TILTED = "tilted"
 
 UNFOLLOWED = "the first moments of tipping over the rim cannot be followed"
 
-LONGEST_STEP, HALVINGS = 0.2, 12
+LONGEST_STEP, HALVINGS = 0.2, 20
 """Length of the first step that is tried, in natural units of time, and how often it is halved."""
+
+PART_OF_RISE = 0.5
+"""Part of the time in which a tilt that falls back would rise that the first step takes at most."""
 
 ITERATIONS = 100
 """Iterations of a step at most: few, but where the normal force rises much as the body tips."""
@@ -34,8 +40,17 @@ SMALL_ANGLE = 1e-6
 UNMOVED = 3e-16
 """Change of the numbers, in natural units, at which an iteration has converged, per step."""
 
+GUESSES = 2
+"""Iterations of the first guess: by the second the force has grown as the velocity has."""
+
 BARELY_TILTED = 1e-8
 """Sine of the tilt at which the rates are those at first, to as much."""
+
+FIRST_TILT = 1e-13
+"""Sine of the tilt of the first instant of a body that tilts at a rate: the energy of the result is
+wrong by as much, and the force, of which terms with the inverse cancel, by its inverse times
+rounding.
+"""
 
 UNRESOLVED = 1e-13
 """Last coefficient of the rates, in natural units, up to which a step is resolved."""
@@ -46,7 +61,7 @@ class TipOnset(Mode):
     """A body begins to tip over the rim of its face."""
 
     contact_mode: ContactMode
-    """The mode in which it tips: the edge slips."""
+    """The mode in which it tips: the edge slips or sticks."""
     direction: Horizontal
     """The direction into which the axis leans at first."""
 
@@ -65,7 +80,8 @@ class TipOnset(Mode):
         self, time: float, state: State, end: float, integrator: Integrator
     ) -> Iterator[Segment]:
         """Follow one step, as long as the motion allows."""
-        begin, length = [*self.contact_mode.numbers(state)], min(LONGEST_STEP, end - time)
+        begin = [*self.contact_mode.numbers(state)]
+        length = min(LONGEST_STEP, end - time, PART_OF_RISE * self._time_of_rise(begin))
         for _ in range(HALVINGS):
             rates = self._rates_at_points(begin, length)
             if rates is not None:
@@ -90,12 +106,22 @@ class TipOnset(Mode):
             rows.append(as_array(row))
         knots = [length * part / PARTS for part in range(PARTS + 1)]
         reach = end if length >= end - time else time + length
-        solution = DenseSolution.of_rows(knots, begin, rows).moved(time, reach)
+        solution = DenseSolution.of_rows(knots, self._first_numbers(begin), rows)
+        solution = solution.moved(time, reach)
         last = self.state(
             [a + length * integral(each) for a, each in zip(begin, rates, strict=True)]
         )
         how = ModeEnd(COMPLETED if reach >= end else TILTED, last)
         return Segment(self.contact_mode, solution, last, how, 1)
+
+    def _first_numbers(self, begin: list[float]) -> list[float]:
+        """Return the numbers that a result has of the first instant, at which the point that
+        touches must be defined if it moves.
+        """
+        if not any(begin[3:5]):
+            return begin
+        x, y = self.direction
+        return [FIRST_TILT * x, FIRST_TILT * y, *begin[2:]]
 
     def _rates_at_points(self, begin: list[float], length: float) -> list[list[float]] | None:
         """Return the rates of every number at the points of a step, by Newton's method for the
@@ -108,7 +134,7 @@ class TipOnset(Mode):
             before, sizes = points, _sizes(points, directions)
             if min(sizes) <= 0.0:
                 return None
-            columns = [self._rates_at(points, sizes, directions, j, 0.0) for j in range(STAGES)]
+            columns = [self._rates_at(points, sizes, directions, j) for j in range(STAGES)]
             turned = [
                 self._rates_at(points, sizes, directions, j, SMALL_ANGLE) for j in range(STAGES)
             ]
@@ -116,7 +142,7 @@ class TipOnset(Mode):
             points = _moved(begin, rates, length)
             # The axis follows the momentum at once: else the direction lags, and swings.
             points = [*before[:3], *points[3:]]
-            columns = [self._rates_at(points, sizes, directions, j, 0.0) for j in range(STAGES)]
+            columns = [self._rates_at(points, sizes, directions, j) for j in range(STAGES)]
             for number in range(3):
                 rates[number] = [columns[j][number] for j in range(STAGES)]
             points = _moved(begin, rates, length)
@@ -133,24 +159,43 @@ class TipOnset(Mode):
             largest = max([1.0, *[abs(each[STAGES - 1]) for each in points]])
             if moved <= UNMOVED * largest and max(map(abs, changes)) <= UNRESOLVED:
                 tails = [abs(coefficients(each)[STAGES - 1]) for each in rates]
-                return rates if max(tails) <= UNRESOLVED else None
+                lasts = max(tails) <= UNRESOLVED and self._lasts(points)
+                return rates if lasts else None
         return None
+
+    def _lasts(self, points: list[list[float]]) -> bool:
+        """Return whether no guard of the contact mode falls through zero between the points."""
+        mode = self.contact_mode
+        rows = [[each[j] for each in points] for j in range(STAGES)]
+        for guard in mode.motion.guards:
+            values = [float(guard.value(row, mode.parameters)) for row in rows]
+            if any(values[j] > 0.0 >= values[j + 1] for j in range(STAGES - 1)):
+                return False
+        return True
 
     def _lever(self, up: float) -> float:
         """Return what makes the rate of the axis from the angular momentum: +-1 / I1."""
         return up / float(self.top.transverse_inertia)
 
+    def _time_of_rise(self, begin: list[float]) -> float:
+        """Return the time in which a tilt that falls back would rise, at its first acceleration;
+        infinity where it does not fall back.
+        """
+        x, y = self.direction
+        still = self._rates_at([[number] for number in begin], [BARELY_TILTED], [self.direction], 0)
+        rising, driven = x * begin[4] - y * begin[3], x * still[4] - y * still[3]
+        return -rising / driven if rising * driven < 0.0 else math.inf
+
     def _first_guess(self, begin: list[float], length: float, lever: float) -> list[list[float]]:
-        """Return the numbers at the points where the rates stay as they are at first."""
+        """Return the numbers at the points where the tilt changes no rates yet."""
         points = [[number] * STAGES for number in begin]
-        still = self._rates_at(points, [BARELY_TILTED], [self.direction], 0, 0.0)
-        for j in range(STAGES):
-            elapsed = length * GAUSS.places[j]
-            for number in range(3, len(begin)):
-                points[number][j] += elapsed * still[number]
-            points[0][j] = 0.5 * elapsed * elapsed * lever * still[4]
-            points[1][j] = -0.5 * elapsed * elapsed * lever * still[3]
-        return points
+        sizes, directions = [BARELY_TILTED] * STAGES, [self.direction] * STAGES
+        for _ in range(GUESSES):
+            columns = [self._rates_at(points, sizes, directions, j) for j in range(STAGES)]
+            rates = [[columns[j][number] for j in range(STAGES)] for number in range(len(begin))]
+            points = [*points[:3], *_moved(begin, rates, length)[3:]]
+        rising = [[lever * each for each in points[4]], [-lever * each for each in points[3]]]
+        return [*_moved(begin[:2], rising, length), *points[2:]]
 
     def _rates_at(
         self,
@@ -158,7 +203,7 @@ class TipOnset(Mode):
         sizes: Sequence[float],
         directions: Sequence[Horizontal],
         place: int,
-        turn: float,
+        turn: float = 0.0,
     ) -> list[float]:
         """Return the rates at a point where the axis leans into a direction, turned by an angle."""
         x, y = _turned(directions[place], turn)

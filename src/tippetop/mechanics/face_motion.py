@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from tippetop.mechanics.field import OuterForces
 from tippetop.mechanics.laws.face_friction import face_law_type
-from tippetop.mechanics.motion import outer_forces_in
+from tippetop.mechanics.motion import angular_velocity, outer_forces_in
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull, acting
 from tippetop.mechanics.surfaces.surface import Surface, support_at
@@ -48,6 +48,47 @@ def drilling_rate(momentum: Vector, top: Top) -> Scalar:
     return momentum[2] / top.axial_inertia
 
 
+def turning_of_face(momentum: Vector, top: Top) -> Horizontal:
+    """Horizontal angular velocity of a body whose axis is vertical, rad/s."""
+    return (momentum[0] / top.transverse_inertia, momentum[1] / top.transverse_inertia)
+
+
+def rim_speed(momentum: Vector, top: Top) -> Scalar:
+    """Return a1 |omega_h|, m/s: how much slower the lowest point of the rim falls than the middle
+    rises.
+    """
+    x, y = turning_of_face(momentum, top)
+    return face_radii(top.surface)[1] * (x * x + y * y) ** 0.5
+
+
+def face_gap_rate(state: State, top: Top) -> Scalar:
+    """Return v_n - a1 |omega_h|, the normal velocity of that point of the face which sinks fastest,
+    m/s; the axis is vertical.
+    """
+    return state.velocity[2] - rim_speed(state.momentum, top)
+
+
+def face_gap_rate_behind(state: State, top: Top) -> Scalar:
+    """Return v_n + a1 |omega_h|, the normal velocity of that point of the face which sinks least,
+    m/s; the axis is vertical.
+    """
+    return state.velocity[2] + rim_speed(state.momentum, top)
+
+
+def sinking_rim(turning: Horizontal) -> Horizontal:
+    """Return the direction of that point of the rim which sinks fastest, of floats."""
+    x, y = turning
+    size = (x * x + y * y) ** 0.5
+    return (y / size, -x / size)
+
+
+def slip_of_face(state: State, top: Top) -> Horizontal:
+    """Return the slip velocity of the middle of the face, m/s; the axis is vertical."""
+    (x, y), (u, v) = turning_of_face(state.momentum, top), state.velocity[:2]
+    height = support_at(state.axis, top.surface)[0]
+    return (u - height * y, v + height * x)
+
+
 def face_speed(velocity: Horizontal, momentum: Vector, top: Top) -> Scalar:
     """Return sqrt(v^2 + (a1 w)^2), m/s: zero where neither slip nor drilling goes on."""
     drilled = face_radii(top.surface)[1] * drilling_rate(momentum, top)
@@ -55,23 +96,41 @@ def face_speed(velocity: Horizontal, momentum: Vector, top: Top) -> Scalar:
 
 
 def lying_flat(state: State, top: Top) -> State:
-    """Return the state on the face: axis vertical, tilting and normal velocity ended, floats."""
-    up = 1.0 if state.axis[2] > 0.0 else -1.0
-    axis = (0.0, 0.0, up)
-    momentum, velocity = (0.0, 0.0, state.momentum[2]), (state.velocity[0], state.velocity[1], 0.0)
-    return State(axis, momentum, velocity, support_at(axis, top.surface)[0])
+    """Return the state on the face: axis vertical, tilting and normal velocity ended, floats.
+
+    The slip of the face is that of its middle before: what stuck sticks.
+    """
+    flat = onto_face(state, top)
+    momentum, (u, v) = (0.0, 0.0, flat.momentum[2]), slip_of_face(flat, top)
+    return flat._replace(momentum=momentum, velocity=(u, v, 0.0))
+
+
+def onto_face(state: State, top: Top) -> State:
+    """Return the state of a body that comes to its face: axis vertical, with the horizontal angular
+    velocity and the angular momentum about the vertical that it has, floats.
+    """
+    axis = (0.0, 0.0, 1.0 if state.axis[2] > 0.0 else -1.0)
+    x, y, _ = angular_velocity(state.axis, state.momentum, top)
+    inertia = top.transverse_inertia
+    momentum = (inertia * x, inertia * y, state.momentum[2])
+    return State(axis, momentum, state.velocity, support_at(axis, top.surface)[0])
 
 
 def resting_on_face(axis: Vector, top: Top) -> FaceForces:
     """Return the forces on a body at rest on its face: they hold it against the outer field."""
     outer = face_field(axis, (0.0, 0.0, 0.0), (0.0, 0.0), top)
     x, y = -outer.force[0], -outer.force[1]
-    return _face_forces(axis, (x, y), top.mass * top.gravity, 0.0, top)
+    return forces_on_face(axis, (x, y), top.mass * top.gravity, 0.0, top)
 
 
 def is_held_on_face(axis: Vector, top: Top) -> bool:
     """Return whether dry friction holds a body at rest on its face, of floats."""
-    x, y, normal = resting_on_face(axis, top).force
+    return can_hold(resting_on_face(axis, top).force, top)
+
+
+def can_hold(force: Vector, top: Top) -> bool:
+    """Return whether dry friction can exert a force on a face that does not drill, of floats."""
+    x, y, normal = force
     friction: Any = top.friction
     return bool(x * x + y * y <= (friction.mu * normal) ** 2)
 
@@ -82,7 +141,7 @@ def face_field(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -
     return OuterForces((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)) if outer is None else outer
 
 
-def _face_forces(
+def forces_on_face(
     axis: Vector, friction: Horizontal, normal: Scalar, torque: Scalar, top: Top
 ) -> FaceForces:
     """Return the forces with the couple of the pressure that balances the moment of friction."""
@@ -113,7 +172,7 @@ def sliding_on_face(
     normal = top.mass * top.gravity
     traction = law.traction(velocity, drilling_rate(momentum, top))
     friction = normal * traction.force[0], normal * traction.force[1]
-    return _face_forces(axis, friction, normal, normal * traction.torque, top)
+    return forces_on_face(axis, friction, normal, normal * traction.torque, top)
 
 
 def tipping_direction(state: State, top: Top) -> Horizontal | None:

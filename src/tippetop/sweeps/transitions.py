@@ -18,6 +18,7 @@ from tippetop.mechanics.flight.free_motion import gap, gap_rate
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import along_table, falls_by_zero, sliding_contact
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.results.accumulation import accumulate, of_a_part
 from tippetop.results.metrics import STATUSES
 from tippetop.sweeps.flights import fly_all, rolls, slides, slips
@@ -176,7 +177,7 @@ class Crossings:
         again, starts, states = [], [], []
         for i, transition in enumerate(transitions):
             self._note(lanes[i], float(time[i]), transition)
-            if not isinstance(transition.next, Flight | Status) and not is_plain(transition.next):
+            if not isinstance(transition.next, Status) and not is_for_lanes(transition):
                 self._follow_alone(int(lanes[i]), float(time[i]), single(state, i), transition)
                 continue
             cell = self.slots.cell[lanes[i]]
@@ -265,6 +266,17 @@ def joined(first: Flying, second: Flying) -> Flying:
         np.concatenate((time, others_time)),
         np.concatenate((vanishing, others_vanishing)),
     )
+
+
+def is_for_lanes(transition: Transition) -> bool:
+    """Return whether lanes go on from a transition: not where a body flies with its face level, of
+    which an edge's gap is zero twice.
+    """
+    mode, (x, y, _) = transition.next, transition.state.axis
+    if isinstance(mode, Flight):
+        edges = any(is_edge(contact.surface) for contact in mode.top.body.contacts)
+        return not edges or x != 0.0 or y != 0.0
+    return isinstance(mode, Mode) and is_plain(mode)
 
 
 def is_plain(mode: Mode) -> bool:
