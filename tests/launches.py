@@ -215,13 +215,16 @@ def friction_apart(track: dict[str, Any], run: Any, count: int) -> float:
 
 def sizes_of(run: Any) -> dict[str, float]:
     """The largest number of each unit in a run, beside which others are judged; and 1 rad, 1 s and
-    1.
+    1. Jellett's integral, zero but for rounding in planar motion, is judged beside its factors.
     """
     sizes = dict[str, float]()
     for name in SAMPLED | METRICS | LISTED:
         if run[name].dtype.kind == "f":
             units = run[name].attrs["units"]
             sizes[units] = max(sizes.get(units, 0.0), largest(np.abs(run[name].values)))
+    units = run["jellett"].attrs["units"]
+    factors = largest(np.abs(run["angular_momentum"].values)) * largest(run["height"].values)
+    sizes[units] = max(sizes[units], factors)
     return sizes | dict.fromkeys(("rad", "s", "1"), 1.0)
 
 

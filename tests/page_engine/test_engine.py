@@ -122,6 +122,31 @@ def test_a_body_that_tips_over_its_rim_is_the_same(spin: float) -> None:
     assert not compared(found, run)
 
 
+@pytest.mark.parametrize("tilt", [0.0, 0.2])
+def test_a_cylinder_that_lands_flat_or_rocks_is_the_same(tilt: float) -> None:
+    mass, radius, height = 0.1, 0.01, 0.06
+    cylinder = tt.Body(
+        mass=mass,
+        shape=[tt.Ring(radius=radius, center=side * height / 2) for side in (-1, 1)],
+        I1=mass * (3 * radius**2 + height**2) / 12,
+        I3=mass * radius**2 / 2,
+    )
+    fields = (
+        {"spin": 30.0, "gap": 0.01, "velocity": (0.2, 0.1, 0.0)} if tilt == 0.0 else {"spin": 0.0}
+    )
+    problem = tt.Problem(
+        body=cylinder,
+        friction=tt.CoulombFriction(mu=0.25 if tilt == 0.0 else 0.5),
+        launch=tt.Launch(tilt=tilt, **fields),
+        contact=tt.Contact(restitution=0.4 if tilt == 0.0 else 0.0),
+    )
+    written = problem.model_dump(mode="json")
+    (found,) = in_javascript([asked(0, 0.3) | {"problem": written}])
+    run = in_python(written, 0.3)
+    assert list(run["event_kind"].values).count("impact") > 1
+    assert not compared(found, run)
+
+
 def test_a_disk_that_wobbles_down_is_the_same() -> None:
     disk = tt.Body(mass=0.4, shape=tt.Ring(radius=0.04), I1=1.6e-4, I3=3.2e-4)
     problem = tt.Problem(
