@@ -1,5 +1,6 @@
 """Bodies from profiles: the surfaces they stand on, and which they cannot have."""
 
+import itertools
 import math
 
 import pytest
@@ -134,3 +135,37 @@ def test_a_turned_top_comes_to_lie_on_sphere_and_stem_where_the_hull_says():
     (both,) = (tilt for tilt in piece.hull.flats)
     assert run["tilt"].values[-1] == pytest.approx(both, abs=1e-9)
     assert piece.hull.zones[0].high == both
+
+
+WALL = 0.012
+"""Inner radius of a tube of outer radius R."""
+
+
+def test_a_tube_lies_on_annuli_with_the_radii_of_its_wall():
+    body = tt.Body.turned([(WALL, 0), (R, 0), (R, 0.03), (WALL, 0.03), (WALL, 0)], 700.0)
+    for ring, center in zip(body.shapes, (-0.015, 0.015), strict=True):
+        face = (ring.radius, ring.inner_radius, ring.center)
+        assert face == pytest.approx((R, WALL, center), rel=1e-12)
+
+
+@pytest.mark.parametrize("pieces", [1, 7])
+def test_a_cup_lies_on_a_disk_one_way_and_on_its_wall_the_other(pieces):
+    """Points along the straight edges, as scans have them, change nothing."""
+    corners = [(0, 0), (R, 0), (R, 0.03), (WALL, 0.03), (WALL, 0.004), (0, 0.004)]
+    profile = [corners[0]]
+    for (r, z), (s, w) in itertools.pairwise(corners):
+        profile += [
+            (r + k / pieces * (s - r), z + k / pieces * (w - z)) for k in range(1, pieces + 1)
+        ]
+    body = tt.Body.turned(profile, 700.0, tolerance=0.0)
+    below, above = sorted(body.shapes, key=lambda ring: ring.center)
+    assert below.inner_radius == 0.0
+    assert above.inner_radius == pytest.approx(WALL, rel=1e-9)
+
+
+def test_a_bottle_with_a_hollow_foot_and_a_rounded_rim():
+    foot = [(0, 0.002), (WALL, 0), (R, 0), (R, 0.03), (WALL, 0.03, 0.004), (WALL, 0.01), (0, 0.01)]
+    below, above = sorted(tt.Body.turned(foot, 700.0).shapes, key=lambda ring: ring.center)
+    assert below.inner_radius == pytest.approx(WALL, rel=1e-9)
+    assert above.tube == pytest.approx(0.004)
+    assert above.radius * (1 - 2e-3) < above.inner_radius < above.radius

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from tippetop.lathe.hull import ConvexHull, Zone
 from tippetop.lathe.support import polynomial_support
 from tippetop.lathe.workpiece import Workpiece
+from tippetop.mechanics.laws.face_friction import LEAST_WIDTH
 from tippetop.problem.shapes import (
     DEGREE,
     EccentricSphere,
@@ -97,18 +98,18 @@ def touching_surfaces(workpiece: Workpiece, completed: bool = False) -> list[Sha
         complete = [zone for zone in zones if not any(zone in row for row in cut)]
         shapes = [
             *((row[0].low, _arcs(row, workpiece)) for row in cut),
-            *((zone.low, _shape(zone, _above(zone.height, workpiece))) for zone in complete),
+            *((zone.low, _shape(zone, workpiece)) for zone in complete),
         ]
         ordered = [shape for _, shape in sorted(shapes, key=lambda pair: pair[0])]
         distinct = [shape for k, shape in enumerate(ordered) if shape not in ordered[:k]]
         return [*ovals, *distinct]
-    shapes_of_zones = [_shape(zone, _above(zone.height, workpiece)) for zone in zones]
+    shapes_of_zones = [_shape(zone, workpiece) for zone in zones]
     if ovals:
         return [
             *ovals,
             *[one for k, one in enumerate(shapes_of_zones) if one not in shapes_of_zones[:k]],
         ]
-    outer = [_shape(zone, _above(zone.height, workpiece)) for zone in hull.complete_surfaces(reach)]
+    outer = [_shape(zone, workpiece) for zone in hull.complete_surfaces(reach)]
     first = outer[0]
     if len(outer) == 1 and isinstance(first, Sphere) and 0.0 < first.center < first.radius:
         return [EccentricSphere(radius=first.radius, eccentricity=first.center / first.radius)]
@@ -184,11 +185,42 @@ def _oval(workpiece: Workpiece, low: float, high: float, completed: bool) -> Sha
     return Oval(support=tuple(support))
 
 
-def _shape(zone: Zone, center: float) -> Shape:
+def _shape(zone: Zone, workpiece: Workpiece) -> Shape:
+    """Return the surface of a zone about the centre of mass, complete."""
+    center = _above(zone.height, workpiece)
     if zone.radius == 0.0:
         return Sphere(radius=zone.tube, center=center)
     if zone.radius > 0.0:
-        return Ring(radius=zone.radius, center=center, tube=zone.tube)
+        inner = inner_radius(zone, workpiece)
+        return Ring(radius=zone.radius, center=center, tube=zone.tube, inner_radius=inner)
     part = "an arc around a point beyond the axis"
     accepted = "part of a body that stands on spheres, rings and smooth curves"
     raise InvalidInput("profile", Described(part), accepted, hint="round it by about 1 mm")
+
+
+def inner_radius(zone: Zone, workpiece: Workpiece) -> float:
+    """Return the inner radius of the flat face that a ring bounds, m; 0 of a disk.
+
+    The face is what the profile has of the plane on which the body lies, from the ring inwards to
+    where the profile leaves it: 0 if that is at the axis, and of a ring that touches the plane in a
+    circle, such as a rounded rim, as near to the ring as a face may be.
+
+    Of the two faces of a ring on which the body can lie either way, it is that at tilt 0, and a
+    ring on which it never lies has none.
+    """
+    lowest, highest = zone.low == 0.0, zone.high == math.pi
+    if not (lowest or highest):
+        return 0.0
+    plane = zone.height - zone.tube if lowest else zone.height + zone.tube
+    within, radius = allowance(workpiece), zone.radius
+    flat = [
+        (min(edge.start.real, edge.end.real), max(edge.start.real, edge.end.real))
+        for edge in workpiece.outline.edges
+        if not edge.turn and max(abs(edge.start.imag - plane), abs(edge.end.imag - plane)) <= within
+    ]
+    for inner, outer in sorted(flat, key=lambda ends: -ends[0]):
+        if inner < radius <= outer + within:
+            radius = inner
+    if radius <= within:
+        return 0.0
+    return min(radius, (1.0 - LEAST_WIDTH) * zone.radius)
