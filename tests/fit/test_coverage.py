@@ -5,7 +5,8 @@ import pytest
 
 import tippetop as tt
 from campaigns import seed_ranges
-from tippetop.fit.fitted import CLEAR, exceeds_noise
+from tippetop.fit.fitted import CLEAR
+from tippetop.fit.residual_statistics import exceeds_noise
 
 PIXEL, BLUR, LOST = 2e-4, 0.5, 0.1
 """Size of a pixel, m; noise of a mark, pixels; and share of frames without one."""

@@ -8,9 +8,9 @@ from typer.testing import CliRunner
 
 import tippetop as tt
 from tippetop.cli.commands import app
-from tippetop.fit.fitted import Minimum, are_correlated, correlation_time
-from tippetop.fit.least_squares import Search
 from tippetop.fit.model import Model
+from tippetop.fit.residual_statistics import are_correlated, correlation_time
+from tippetop.fit.search import Minimum, Search
 from tippetop.fit.template_bank import SPACING, lattice, phase_metric
 
 TRUE = tt.presets.report_problem(spin=155.0)

@@ -24,7 +24,7 @@ from tippetop.support.progress_bar import progress_bar
 
 if TYPE_CHECKING:
     from tippetop.fit.fitted import FitResult
-    from tippetop.fit.least_squares import FitProgress
+    from tippetop.fit.search import FitProgress
 
 
 @of_a_problem

@@ -2,7 +2,7 @@
 
 Read `delimited` (text to columns), `observations` (what a run would have shown a camera or a
 clock), `measurement` (data and what they observe), `model` (numbers of a problem to values and
-their derivatives), then `least_squares`, `fitted` and `planning`. Derivatives of runs are
+their derivatives), then `least_squares`, `search`, `fitted` and `planning`. Derivatives of runs are
 `sensitivities`: read `linearized_run` for how they go through events, and before that
 `variational` (equations of motion with their derivatives) and `problem_numbers` (fields of a
 problem to what a run starts from). `improve` finds better tops by them and by theory.

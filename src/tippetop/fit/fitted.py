@@ -1,23 +1,27 @@
 """What a fit tells: numbers with errors, residuals, and what the data do not determine."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 from scipy.stats import norm, t
 
 from tippetop.fit.measurement import Measurement
+from tippetop.fit.residual_statistics import (
+    FEWEST_RESIDUALS,
+    MOST_ABOVE,
+    are_correlated,
+    correlation_time,
+    durbin_watson,
+    exceeds_noise,
+)
+from tippetop.fit.search import Minimum, Search
 from tippetop.integrators.base import Array
 from tippetop.problem.problem import Problem
 from tippetop.support.errors import InvalidInput, NotConverged, is_number
 from tippetop.support.suggestions import not_one_of
-
-if TYPE_CHECKING:
-    from tippetop.fit.joint_model import JointModel
-    from tippetop.fit.least_squares import Search
-    from tippetop.fit.model import Model
 
 UNDETERMINED = 1e-6
 """Singular value, relative to the largest, below which data do not determine a direction: above the
@@ -29,38 +33,15 @@ WEAK = 1.0
 SHARE = 0.3
 """Least component of a number in an undetermined direction to be named."""
 
-CORRELATED_RESIDUALS = 3.0
-"""Standard deviations of the statistic of Durbin and Watson of random residuals, below its mean, at
-which residuals count as correlated: one table in a thousand is named wrongly."""
-
-FEWEST_RESIDUALS = 8
-"""Residuals from which on their statistic says something."""
-
 OUTLIER = 5.0
 """Standardised residual from which on a number counts as an outlier: one in a million random ones
 is larger."""
-
-MOST_ABOVE = 4.0
-"""Standard deviations of a sum of squares from its expected value beyond which noise of the stated
-size does not explain it."""
 
 RIVAL = 6.0
 """Sum of squares above the least, in variances, up to which another minimum is reported."""
 
 CLEAR = 6.0
 """Difference of BIC from which on one model is preferred: "strong" evidence of Kass and Raftery."""
-
-
-class Minimum(NamedTuple):
-    """Where a search ended."""
-
-    numbers: Array
-    cost: float
-    """Sum of the squares of the residuals."""
-    converged: bool
-    message: str
-    slopes: Array = np.zeros((0, 0))
-    """Derivatives of the residuals, by differences, shape (data, numbers)."""
 
 
 class Interval(NamedTuple):
@@ -135,7 +116,7 @@ class FitResult:
     alternatives: tuple[Mapping[str, float], ...]
     runs: int
     measurements: tuple[Measurement, ...] = field(repr=False)
-    _search: "Search" = field(repr=False)
+    _search: Search = field(repr=False)
 
     @property
     def correlation(self) -> xr.DataArray:
@@ -255,7 +236,7 @@ class FitResult:
         return name
 
 
-def result_of(search: "Search", best: Minimum, rivals: Sequence[Minimum]) -> FitResult:
+def result_of(search: Search, best: Minimum, rivals: Sequence[Minimum]) -> FitResult:
     """Return the result of a search that ended in a minimum."""
     model, numbers = search.model, best.numbers
     residuals = search.residuals(numbers)
@@ -321,7 +302,7 @@ def result_of(search: "Search", best: Minimum, rivals: Sequence[Minimum]) -> Fit
     )
 
 
-def search_of(fit: FitResult) -> "Search":
+def search_of(fit: FitResult) -> Search:
     """Return the search that a fit came from."""
     return fit._search
 
@@ -352,7 +333,7 @@ def _halved(excess: Any, inner: float, outer: float, width: float) -> float:
     return 0.5 * (inner + outer)
 
 
-def _with_steps(jacobian: Array, search: "Search", variance: float) -> Array:
+def _with_steps(jacobian: Array, search: Search, variance: float) -> Array:
     """Return the derivatives of the residuals over a noise that has the heights of steps in it."""
     steps = (search.model.steps / search.deviations)[search.measured]
     noise = np.sqrt(variance + steps**2)
@@ -402,7 +383,7 @@ def _direction(direction: Array, names: Sequence[str], error: float) -> str:
     return f"{subject} (to {100.0 * error:.2g} %)"
 
 
-def _log_likelihood(search: "Search", cost: float, count: int) -> tuple[float, int]:
+def _log_likelihood(search: Search, cost: float, count: int) -> tuple[float, int]:
     """Return the logarithm of the likelihood, and how many numbers of the noise it fits."""
     deviations = search.deviations[search.measured]
     if search.is_noise_known:
@@ -412,7 +393,7 @@ def _log_likelihood(search: "Search", cost: float, count: int) -> tuple[float, i
 
 
 def _cautions(
-    search: "Search",
+    search: Search,
     best: Minimum,
     residuals: Array,
     degrees: int,
@@ -475,56 +456,6 @@ def _cautions_of_column(label: str, column: Array, is_stated: bool) -> list[str]
             f" the model lacks something, and {effect}"
         )
     return words
-
-
-def exceeds_noise(cost: float, degrees: int, deviations: float = MOST_ABOVE) -> bool:
-    """Return whether a sum of squares over known variances is so far above the expected one."""
-    return degrees > 0 and cost > degrees + deviations * (2.0 * degrees) ** 0.5
-
-
-def columns_of(model: "Model | JointModel", residuals: Array) -> Iterator[tuple[str, Array]]:
-    """Yield the label and the residuals of each column of the data, without missing ones."""
-    ends = np.cumsum([one.values.size for one in model.measurements])[:-1]
-    for one, part in zip(model.measurements, np.split(residuals, ends), strict=True):
-        table = part.reshape(one.values.shape)
-        for label, column in zip(one.observation.labels, table.T, strict=True):
-            yield label, column[np.isfinite(column)]
-
-
-def durbin_watson(series: Array) -> float:
-    """Return the statistic of Durbin and Watson of residuals: 2 for random ones, 0 for drifts."""
-    return float(np.sum(np.diff(series) ** 2) / np.sum(series**2))
-
-
-def are_correlated(series: Array) -> bool:
-    """Return whether residuals, where there are enough, are no random ones.
-
-    For random ones the statistic of Durbin and Watson has the mean 2 and the variance
-    4 (n - 2) / (n^2 - 1).
-    """
-    count = len(series)
-    if count < FEWEST_RESIDUALS or not np.any(series):
-        return False
-    deviation = (4.0 * (count - 2.0) / (count**2 - 1.0)) ** 0.5
-    return bool(durbin_watson(series) < 2.0 - CORRELATED_RESIDUALS * deviation)
-
-
-def correlation_time(series: Array) -> float:
-    """Return how many successive residuals count as one: the sum of their autocorrelation.
-
-    It is 1 for residuals that are not correlated. The sum ends where the autocorrelation of two
-    neighbouring lags is negative together: C. J. Geyer, Practical Markov chain Monte Carlo,
-    Statistical Science 7 (1992), 473.
-    """
-    if not are_correlated(series):
-        return 1.0
-    size, total = float(series @ series), 1.0
-    for lag in range(1, len(series) - 1, 2):
-        pair = series[lag:] @ series[:-lag] + series[lag + 1 :] @ series[: -lag - 1]
-        if pair <= 0.0:
-            break
-        total += 2.0 * float(pair) / size
-    return min(total, len(series) / 2.0)
 
 
 class Comparison(NamedTuple):

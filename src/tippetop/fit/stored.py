@@ -14,10 +14,10 @@ import numpy as np
 import xarray as xr
 
 from tippetop.fit.fitted import FitResult, search_of
-from tippetop.fit.least_squares import Search
 from tippetop.fit.measurement import Measurement
 from tippetop.fit.model import Model
 from tippetop.fit.observations import Camera, EventTimes, SpinRate, Variables
+from tippetop.fit.search import Search
 from tippetop.problem.problem import Problem
 from tippetop.support.errors import Described, FileTrouble, InvalidInput, require
 from tippetop.support.files import in_words, named, path_of, require_ending, written_beside
