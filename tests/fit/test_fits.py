@@ -1,6 +1,7 @@
 """Fits return what made the data, with errors that are right, and say what they cannot tell."""
 
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from typer.testing import CliRunner
 
 import tippetop as tt
 from tippetop.cli.commands import app
+from tippetop.fit.fitted import search_of
 from tippetop.fit.model import Model
 from tippetop.fit.residual_statistics import are_correlated, correlation_time
 from tippetop.fit.search import Minimum, Search
@@ -173,6 +175,33 @@ def test_the_profile_of_revolutions_a_minute():
     for name in fitted.values:
         low, high = fitted.profile(name)
         assert low < fitted.values[name] < high
+
+
+def test_a_sharp_minimum_is_reached(monkeypatch):
+    """The frequency of a disk that wobbles down grows without bound: a thousandth of a standard
+    error of its rolling resistance changes the slopes of the last data.
+    """
+    ring = tt.Ring(radius=0.0375, tube=0.0, center=0.0)
+    disk = tt.Problem(
+        body=tt.Body(mass=0.4, shape=ring, I1=1.40625e-4, I3=2.8125e-4),
+        friction=tt.ViscousFriction(mu=0.3),
+        rolling_resistance=5e-4,
+        launch=tt.Launch(tilt=0.25, spin=0.0, precession=65.0),
+    )
+    end = float(tt.simulate(disk, 9.0, samples=2)["event_time"][0])
+    times, fields = np.linspace(0.0, 0.985 * end, 60), ["rolling_resistance", "launch.tilt"]
+    heard = tt.simulate(disk, float(times[-1]), times=times)["precession"].values
+    noisy = heard + np.random.default_rng(0).normal(0.0, 0.3, 60)
+    sound = tt.Measurement.of_variables(times, {"precession": noisy}, noise=0.3)
+    fitted = tt.fit(disk, sound, fields, starts=1)
+    search, numbers = search_of(fitted), np.array(list(fitted.values.values()))
+    exact = search.jacobian(numbers)
+    step = np.linalg.lstsq(exact, search.residuals(numbers))[0]
+    assert np.linalg.norm(exact @ step) < 0.01
+    # Where steps of Gauss and Newton come to no end, the second derivatives are taken into account.
+    monkeypatch.setattr(sys.modules[Search.__module__], "MOST_STEPS", 2)
+    again = tt.fit(disk.replace({"launch.tilt": 0.25001}), sound, fields, starts=1)
+    assert again.chi2 < fitted.chi2 + 1e-3
 
 
 def test_what_does_not_converge_is_no_fit(monkeypatch, film):

@@ -99,6 +99,7 @@ HEADINGS = {
     "a unit in words": ("Zeit in ms", "theta in mrad", 1e-3, 1e-3),
     "turns a second": ("T (s)", "omega (Hz)", 1.0, 2.0 * np.pi),
     "turns a minute": ("t (s)", "w (1/min)", 1.0, np.pi / 30.0),
+    "precession, heard": ("t (s)", "phi_dot (rev/s)", 1.0, 2.0 * np.pi),
 }
 
 

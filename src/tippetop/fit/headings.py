@@ -33,6 +33,8 @@ NAMES = {
     **dict.fromkeys(("event", "ereignis", "what", "was"), "event"),
     **dict.fromkeys(("frame", "step", "bild", "bildnummer"), "frame"),
     **dict.fromkeys(("height", "höhe", "hoehe"), "height"),
+    **dict.fromkeys(("theta_dot", "θ'"), "tilt_rate"),
+    **dict.fromkeys(("phi_dot", "φ'", "präzession", "praezession", "wobble"), "precession"),
 }
 """Names of columns, in lower case, and what they are called here."""
 

@@ -115,11 +115,12 @@ class JointModel:
         ]
         return PredictedData(np.concatenate(rows), ())
 
-    def differences(self, numbers: Array) -> tuple[Array, Array]:
-        """Return the values, and their derivatives by differences of runs."""
+    def differences(self, numbers: Array, steps: Array | None = None) -> tuple[Array, Array]:
+        """Return the values, and their derivatives by differences of runs, with stated steps."""
         values, blocks = list[Array](), list[Array]()
         for launch, places in zip(self.launches, self.places, strict=True):
-            seen, slopes = launch.differences(numbers[places])
+            stated = None if steps is None else steps[places]
+            seen, slopes = launch.differences(numbers[places], stated)
             values.append(seen)
             blocks.append(slopes)
         return np.concatenate(values), self._placed(blocks)

@@ -178,14 +178,15 @@ class Model:
         ]
         return type(self)(self.problem, parts, self.fields)
 
-    def differences(self, numbers: Array) -> tuple[Array, Array]:
+    def differences(self, numbers: Array, steps: Array | None = None) -> tuple[Array, Array]:
         """Return the values, and their derivatives by differences of runs.
 
-        A search steps by them: they take one run a field, where exact ones take six.
+        A search steps by them: they take one run a field, where exact ones take six. The steps are
+        `FORWARD_STEP` of the scales of the numbers where none are stated, shape (numbers,).
         """
         run = self.run(numbers)
         center = self.predict(numbers, run).values
-        steps = FORWARD_STEP * self.scales(numbers)
+        steps = FORWARD_STEP * self.scales(numbers) if steps is None else steps
         columns = list[Array]()
         for place, step in enumerate(steps):
             column = np.zeros(len(center))

@@ -13,11 +13,11 @@ from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import OptimizeResult, least_squares
+from scipy.optimize import OptimizeResult, least_squares, minimize
 
 from tippetop.fit.joint_model import JointModel
 from tippetop.fit.measurement import Measurement
-from tippetop.fit.model import Model
+from tippetop.fit.model import FORWARD_STEP, Model
 from tippetop.fit.residual_statistics import are_correlated, columns_of, exceeds_noise
 from tippetop.fit.template_bank import SPACING, lattice, phase_metric, template_count
 from tippetop.integrators.base import Array
@@ -31,6 +31,19 @@ STATIONARY = 0.05
 """Standard errors by which a last step of Gauss and Newton would still move a fit that counts as
 converged."""
 
+NEGLIGIBLE_SLOPE = 1e-6
+"""Singular value of the derivatives, relative to the largest, below which a direction is not
+searched: its derivatives are rounding of runs."""
+
+LONG_STEP, SHORT_STEP = 3e-3, 1e-3
+"""Standard errors of a number, the others held, from which on a step of differences is too long,
+and those of the step that is taken instead. Second derivatives of the residuals then change the
+gradient by less than `STATIONARY` where two numbers are correlated so much that the errors of both
+are a hundred times as large as those with the other held."""
+
+SHORTEST_PART = 1e-3
+"""Least part of the usual step: below it rounding of runs counts."""
+
 UNLIKELY = 1.0
 """Standard deviations of a sum of squares above the expected one from which on the search goes on
 in a wider region: one fit in six that is right has more, and false ones may have little more than
@@ -39,8 +52,9 @@ in a wider region: one fit in six that is right has more, and false ones may hav
 REPRODUCED = 1e-16
 """Variance of residuals, where their noise is not known, that is rounding."""
 
-MOST_STEPS, FEW_STEPS = 100, 12
-"""Trial points of a search in all data, and in a part of them."""
+MOST_STEPS, FEW_STEPS, QUASI_NEWTON_STEPS = 30, 12, 30
+"""Trial points of a search in all data, and in a part of them, and steps that count with second
+derivatives where the former come to no end."""
 
 ROUGH = 1e-3
 """Relative change of the sum of squares at which a search in a part of the data ends: what it finds
@@ -184,11 +198,28 @@ class Search:
         matrix = self.model.jacobian(numbers) / self.deviations[:, None]
         return np.asarray(matrix[self.measured])
 
-    def linearized(self, numbers: Array) -> tuple[Array, Array]:
+    def linearized(self, numbers: Array, steps: Array | None = None) -> tuple[Array, Array]:
         """Return the residuals and their derivatives, by differences of runs."""
-        values, slopes = self.model.differences(numbers)
+        values, slopes = self.model.differences(numbers, steps)
         scaled = (values - self.model.data) / self.deviations
         return scaled[self.measured], (slopes / self.deviations[:, None])[self.measured]
+
+    def slopes(self, numbers: Array) -> Array:
+        """Return the derivatives of the residuals, by differences over steps that are short.
+
+        Where the usual step of a number is not small beside its standard error, shorter steps
+        follow: the second derivatives, of residuals that are not small, would move the minimum.
+        """
+        values, slopes = self.linearized(numbers)
+        steps = FORWARD_STEP * self.model.scales(numbers)
+        deviation = np.sqrt(self.variance(float(values @ values)))
+        moves = np.nan_to_num(np.linalg.norm(slopes, axis=0)) * steps / deviation
+        long = (moves > LONG_STEP) & ~self.model.is_event.any()
+        if long.any() and np.isfinite(moves).all():
+            parts = np.divide(SHORT_STEP, moves, out=np.ones_like(moves), where=long)
+            shorter = np.maximum(parts, SHORTEST_PART) * steps
+            slopes[:, long] = self.linearized(numbers, shorter)[1][:, long]
+        return slopes
 
     def minima(self, starts: int | None) -> list[Minimum]:
         """Return the minima that the search reaches, the least first.
@@ -483,8 +514,60 @@ class Search:
         if not free.any():
             values = self.residuals(start)
             return Minimum(start, float(values @ values), True, "nothing is free")
-        tolerance = STEPPED_TOLERANCE if self.model.is_event.any() else TOLERANCE
-        return self._descend(start, free, tolerance, MOST_STEPS, np.zeros((0, len(start))))
+        has_steps = bool(self.model.is_event.any())
+        tolerance = STEPPED_TOLERANCE if has_steps else TOLERANCE
+        reached = self._descend(start, free, tolerance, MOST_STEPS, np.zeros((0, len(start))))
+        if reached.converged or has_steps or not np.isfinite(reached.cost):
+            return reached
+        return self._by_curvature(reached, free)
+
+    def _by_curvature(self, start: Minimum, free: Array) -> Minimum:
+        """Return the minimum beside a point, by the method of Broyden, Fletcher, Goldfarb, Shanno.
+
+        Steps of Gauss and Newton leave out the second derivatives of the residuals. Where the data
+        determine a direction weakly, and the residuals are not small, they approach a minimum
+        slowly or not at all. The coordinates are standard errors along the principal directions.
+        """
+        sizes = self.model.scales(start.numbers)[free]
+        slopes = start.slopes[:, free] * sizes
+        moved = np.abs(slopes).max(axis=0) > 0.0
+        _, strengths, directions = np.linalg.svd(slopes, full_matrices=False)
+        determined = strengths > NEGLIGIBLE_SLOPE * strengths[0]
+        if not determined.any():
+            return start
+        variance = 1.0 if self.is_noise_known else self.variance(start.cost)
+        basis = sizes[:, None] * directions[determined].T / strengths[determined] * variance**0.5
+        low, high = self.low[free], self.high[free]
+
+        def numbers_at(shift: Array) -> Array:
+            numbers = start.numbers.copy()
+            numbers[free] = np.clip(numbers[free] + basis @ shift, low, high)
+            return numbers
+
+        def half_cost(shift: Array) -> float:
+            values = self.residuals(numbers_at(shift))
+            cost = 0.5 * float(values @ values) / variance
+            return cost if np.isfinite(cost) else np.inf
+
+        def gradient(shift: Array) -> Array:
+            self._check()
+            numbers = numbers_at(shift)
+            projected = np.nan_to_num(self.slopes(numbers))[:, free] @ basis
+            return np.asarray(projected.T @ np.nan_to_num(self.residuals(numbers)) / variance)
+
+        with np.errstate(all="ignore"):
+            result: OptimizeResult = minimize(
+                half_cost,
+                np.zeros(basis.shape[1]),
+                jac=gradient,
+                method="BFGS",
+                options={"gtol": 0.5 * STATIONARY, "maxiter": QUASI_NEWTON_STEPS},
+            )
+        numbers = numbers_at(result.x)
+        values, slopes = self.residuals(numbers), self.slopes(numbers)
+        remaining = _step_left((slopes[:, free] * sizes)[:, moved], values, self.is_noise_known)
+        message = f"the last step still moves by {remaining:.2g} standard errors"
+        return Minimum(numbers, float(values @ values), remaining < STATIONARY, message, slopes)
 
     def _descend(
         self, start: Array, free: Array, tolerance: float, steps: int, weights: Array
@@ -510,7 +593,7 @@ class Search:
 
         def jacobian_of(scaled: Array) -> Array:
             self._check()
-            slopes = np.concatenate([self.linearized(all_numbers(scaled))[1], weights])
+            slopes = np.concatenate([self.slopes(all_numbers(scaled)), weights])
             return np.asarray(np.nan_to_num(slopes[:, free] * sizes))
 
         first = np.clip(start[free] / sizes, low, high)
@@ -557,7 +640,7 @@ def _step_left(jacobian: Array, residuals: Array, is_noise_known: bool) -> float
         return 0.0
     sizes = np.linalg.norm(jacobian, axis=0)
     modes, strengths, _ = np.linalg.svd(jacobian / sizes, full_matrices=False)
-    projected = (modes.T @ residuals)[strengths > 1e-6 * strengths[0]]
+    projected = (modes.T @ residuals)[strengths > NEGLIGIBLE_SLOPE * strengths[0]]
     variance = 1.0 if is_noise_known else residuals @ residuals / max(count - free, 1)
     if variance < REPRODUCED:
         return 0.0
