@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from tippetop.mechanics.contacts.contact_point import ContactPoint, flat
 from tippetop.mechanics.contacts.forces import forces_and_accelerations, slip_length
-from tippetop.mechanics.contacts.slip_onset import find_onset
+from tippetop.mechanics.contacts.onset_forces import find_onset
 from tippetop.mechanics.contacts.slip_variables import slip_part
 from tippetop.mechanics.motion import axis_rate
 

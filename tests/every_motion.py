@@ -10,7 +10,7 @@ from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_moti
 from tippetop.contact.slip_end import SlipEnd
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.contacts.forces import is_set_valued
-from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_clock import SlipComponent
 from tippetop.mechanics.laws.contensou import EllipsoidalLaw
 from tippetop.mechanics.laws.contensou_hertz import HertzBranch, HertzDrillingLaw, HertzSlidingLaw
 from tippetop.mechanics.laws.coulomb import CoulombLaw, RollingResistance

@@ -19,7 +19,7 @@ from tippetop.contact.slip_onset import onset_motion
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
 from tippetop.integrators.scipy_methods import SciPy
-from tippetop.mechanics.contacts.slip_end import SlipComponent, slip_end_rates
+from tippetop.mechanics.contacts.slip_clock import SlipComponent, slip_end_rates
 from tippetop.mechanics.contacts.slip_variables import scaled, size, velocity_of
 from tippetop.mechanics.laws.contensou import EllipsoidalLaw
 from tippetop.mechanics.laws.contensou_hertz import HertzDrillingLaw, HertzLaw

@@ -20,7 +20,7 @@ from tippetop.mechanics.contacts.forces import (
     velocity_without_slip,
     without_drilling,
 )
-from tippetop.mechanics.contacts.slip_end import SlipComponent, slip_end_rates
+from tippetop.mechanics.contacts.slip_clock import SlipComponent, slip_end_rates
 from tippetop.mechanics.contacts.slip_variables import size, velocity_of
 from tippetop.mechanics.laws.contensou_hertz import BRANCH_TORQUE, HertzLaw
 from tippetop.mechanics.laws.coulomb import CoulombLaw

@@ -18,7 +18,7 @@ from tippetop.contact.slip_phase import LEAST, change_over, dips, parts_left
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import iteration, make_integrator
 from tippetop.mechanics.contacts.gauss_points import PARTS, STAGES, gauss_points
-from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_clock import SlipComponent
 from tippetop.mechanics.laws.coulomb import CoulombLaw
 from tippetop.mechanics.motion import on_table, sliding_rates
 from tippetop.mechanics.state import SlidingState

@@ -30,12 +30,12 @@ from tippetop.mechanics.contacts.forces import (
     without_drilling,
 )
 from tippetop.mechanics.contacts.gauss_points import PARTS, STAGES
-from tippetop.mechanics.contacts.slip_end import (
+from tippetop.mechanics.contacts.onset_forces import find_onset
+from tippetop.mechanics.contacts.slip_clock import (
     SlipComponent,
     SlipEndState,
     reopening_guard,
 )
-from tippetop.mechanics.contacts.slip_onset import find_onset
 from tippetop.mechanics.contacts.slip_variables import (
     HORIZON,
     plus,

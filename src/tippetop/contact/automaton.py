@@ -72,11 +72,11 @@ from tippetop.mechanics.contacts.branches import (
 )
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import is_set_valued
+from tippetop.mechanics.contacts.onset_forces import Onset, find_onset, resolve_onset
 from tippetop.mechanics.contacts.pair import Tops, slips_of, without_tilting
 from tippetop.mechanics.contacts.pair_resolver import Resolution, rolling_direction
 from tippetop.mechanics.contacts.resolver import Answer, answers
-from tippetop.mechanics.contacts.slip_end import SlipComponent
-from tippetop.mechanics.contacts.slip_onset import Onset, find_onset, resolve_onset
+from tippetop.mechanics.contacts.slip_clock import SlipComponent
 from tippetop.mechanics.contacts.slip_variables import (
     HORIZON,
     come_to_rest,

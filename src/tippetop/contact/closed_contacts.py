@@ -21,7 +21,7 @@ from tippetop.mechanics.contacts.forces import (
     slip_reserve,
 )
 from tippetop.mechanics.contacts.pair import slip_apart, slips_of
-from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_clock import SlipComponent
 from tippetop.mechanics.contacts.slip_variables import remaining, scaled, slip_of
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.motion import axis_rate

@@ -13,8 +13,8 @@ from tippetop.contact.slip_step import SlipStep
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.contacts.gauss_points import PARTS, STAGES
+from tippetop.mechanics.contacts.slip_clock import SlipEndRates, SlipEndState
 from tippetop.mechanics.contacts.slip_collocation import SlipMotion
-from tippetop.mechanics.contacts.slip_end import SlipEndRates, SlipEndState
 from tippetop.mechanics.contacts.slip_variables import inner, scaled, size
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.vectors import Scalar

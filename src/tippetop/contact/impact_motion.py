@@ -2,8 +2,8 @@
 
 The numbers are those of an `Impulse`. Near the end of slip, or of rolling, their clock is slower
 than the normal impulse: slip decays exponentially by it, as in
-`tippetop.mechanics.contacts.slip_end`. The executors of motions, of one launch and of many, follow
-it (see `impact`).
+`tippetop.mechanics.contacts.slip_clock`. The executors of motions, of one launch and of many,
+follow it (see `impact`).
 """
 
 from collections.abc import Callable, Sequence

@@ -1,5 +1,5 @@
 """The last moments of slip, or of rolling, of any contact mode, in a clock of their own (see
-`tippetop.mechanics.contacts.slip_end`), and polynomials in time made of that.
+`tippetop.mechanics.contacts.slip_clock`), and polynomials in time made of that.
 """
 
 from collections.abc import Iterator, Sequence
@@ -28,7 +28,7 @@ from tippetop.contact.transient import DEGREE, TransientMode, straight
 from tippetop.integrators.base import Arc, Array, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.mechanics.contacts.forces import slip_length
-from tippetop.mechanics.contacts.slip_end import (
+from tippetop.mechanics.contacts.slip_clock import (
     SlipComponent,
     SlipEndRates,
     SlipEndState,

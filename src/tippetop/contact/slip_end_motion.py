@@ -10,7 +10,7 @@ from tippetop.contact.contact_mode import example_of, mode_with, parameter_count
 from tippetop.contact.guards import lasting_guards
 from tippetop.integrators.base import Arc, Array, Guard, Integrator, Motion
 from tippetop.mechanics.contacts.forces import slip_length
-from tippetop.mechanics.contacts.slip_end import (
+from tippetop.mechanics.contacts.slip_clock import (
     SlipComponent,
     SlipEndRates,
     SlipEndState,
@@ -77,8 +77,8 @@ def slip_end_arcs(
 
 @lru_cache
 def slip_end_motion(form: Any, kinds: tuple[Kind, ...], ending: SlipComponent) -> Motion:
-    """Return the equations of motion in the clock of `slip_end` where a velocity of a mode without
-    tops is about to end, for tops of these kinds; time is the last number.
+    """Return the equations of motion in the clock of `slip_clock` where a velocity of a mode
+    without tops is about to end, for tops of these kinds; time is the last number.
 
     The last parameters are when the run ends, and how long before its end the velocity is left to
     `landed`.

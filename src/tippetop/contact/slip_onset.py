@@ -13,8 +13,8 @@ from tippetop.contact.slip_phase import follow_slip
 from tippetop.contact.transient import TransientMode, directed_contacts
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics.contacts.slip_clock import SlipComponent
 from tippetop.mechanics.contacts.slip_collocation import SlipMotion
-from tippetop.mechanics.contacts.slip_end import SlipComponent
 from tippetop.mechanics.contacts.slip_variables import inner, size
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.state import State

@@ -8,7 +8,7 @@ from tippetop.contact.slip_end import SlipEnd
 from tippetop.mechanics.contacts.branches import is_branched, on_branch, on_limit_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued
-from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_clock import SlipComponent
 from tippetop.mechanics.contacts.slip_variables import is_rolling, slip_of, time_to_end
 from tippetop.mechanics.motion import along_table
 from tippetop.mechanics.state import State

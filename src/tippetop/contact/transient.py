@@ -9,7 +9,7 @@ from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.mode import IntegratedMode, Mode, ModeEnd, Reaction, Segment
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution
-from tippetop.mechanics.contacts.slip_end import SlipComponent
+from tippetop.mechanics.contacts.slip_clock import SlipComponent
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top

@@ -37,6 +37,7 @@ from tippetop.mechanics.contacts.forces import (
     sticking_constraints,
     sum_at,
 )
+from tippetop.mechanics.contacts.onset_forces import Onset, TableResponse, find_onset, resolve_onset
 from tippetop.mechanics.contacts.pair import ContactPair, apart, slip_apart, slips_of
 from tippetop.mechanics.contacts.pair_resolver import (
     Resolution,
@@ -45,7 +46,6 @@ from tippetop.mechanics.contacts.pair_resolver import (
     resolution,
     turning_about,
 )
-from tippetop.mechanics.contacts.slip_onset import Onset, TableResponse, find_onset, resolve_onset
 from tippetop.mechanics.contacts.slip_variables import inner
 from tippetop.mechanics.contacts.system import (
     delassus_matrix,

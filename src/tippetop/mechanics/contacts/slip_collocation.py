@@ -1,8 +1,8 @@
 """Steps of implicit collocation for slip, or rolling, that begins or ends under dry friction.
 
-In the words of `slip_end`, a velocity xi = s e changes at a rate xi' = A(z, e) that depends on its
-direction e but not on its speed s. Near s = 0 the direction relaxes at the rate 1/s towards the one
-along which A drives it, so an explicit method needs ever shorter steps. Collocation at Gauss's
+In the words of `slip_clock`, a velocity xi = s e changes at a rate xi' = A(z, e) that depends on
+its direction e but not on its speed s. Near s = 0 the direction relaxes at the rate 1/s towards the
+one along which A drives it, so an explicit method needs ever shorter steps. Collocation at Gauss's
 points takes the directions as unknowns instead. With z for all numbers of the motion, xi among
 them, the equations of a step are
 
@@ -15,7 +15,7 @@ may begin at once, each with a direction of its own.
 Two solutions are smooth at s = 0, and collocation follows them there to rounding: the one on which
 slip begins at s = 0 (xi ~ t or t^2), and its continuation to the end of that same slip. Slip that
 comes from elsewhere ends with a term s^kappa in its direction, kappa not an integer, which no
-polynomial in time resolves: that end belongs to the clock of `slip_end`, unless the term has
+polynomial in time resolves: that end belongs to the clock of `slip_clock`, unless the term has
 decayed below rounding, as it has on a small patch (see `from_end` in `sweep`).
 """
 

@@ -6,7 +6,7 @@ alone, s = |zeta|, and so do all accelerations: with y = (n, L),
 
     y' = Y(y, e),        zeta' = A(y, e) = R e + V,        s' = R,        s e' = V,        V.e = 0.
 
-How it comes to zero is said in `slip_end`. At zeta = 0 the wrench that keeps it zero decides: the
+How it comes to zero is said in `slip_clock`. At zeta = 0 the wrench that keeps it zero decides: the
 body sticks if the limit surface admits it. Otherwise slip goes on in a direction in which it can, A
 = R e with R > 0 (see `find_onset`).
 """
@@ -168,7 +168,7 @@ def remaining(velocity: Slip, change: Slip, horizon: float = HORIZON) -> Scalar:
 
     At its present rate of change A = R e + V it ends after the time s / -R. Where its direction
     turns faster than it ends, as that of a disk that wobbles down, it counts as farther from its
-    end: there the clock of `slip_end`, whose unit is the time s / |A|, is no better than time.
+    end: there the clock of `slip_clock`, whose unit is the time s / |A|, is no better than time.
     """
     return inner(velocity, velocity) + horizon * _closing(velocity, change)
 

@@ -53,7 +53,7 @@ def past_jamming(state: State, top: Top) -> tuple[State, float, float] | None:
     Parameters
     ----------
     state
-        The state before, floats: see `tippetop.mechanics.contacts.slip_end.jamming_guard`.
+        The state before, floats, in which a contact that slips is about to jam.
     top
         The body and the friction law.
 

@@ -1,7 +1,7 @@
 """What each contact of a struck body does at some instant of an impact: slip, stick, or begin.
 
 The configuration is fixed, so that slip and rolling change per unit normal impulse at rates that
-depend on their directions alone, as in contact (see `slip_onset` and `pair_resolver`), with unit
+depend on their directions alone, as in contact (see `onset_forces` and `pair_resolver`), with unit
 normal impulses for the forces that weight calls for.
 """
 
@@ -18,11 +18,11 @@ from tippetop.mechanics.contacts.forces import (
     is_set_valued,
     slip_length,
 )
+from tippetop.mechanics.contacts.onset_forces import resolve_onset
 from tippetop.mechanics.contacts.pair import ContactPair, slip_apart, slips_of
 from tippetop.mechanics.contacts.pair_resolver import OnTwo, Resolution, of_slips
 from tippetop.mechanics.contacts.resolver import moved_under
 from tippetop.mechanics.contacts.slip_direction import Resisted, directions
-from tippetop.mechanics.contacts.slip_onset import resolve_onset
 from tippetop.mechanics.contacts.slip_variables import LEFT_OVER, scaled, size, slip_part
 from tippetop.mechanics.contacts.system import ContactRates
 from tippetop.mechanics.contacts.wrench import Slip, Wrench

@@ -10,8 +10,8 @@ from tippetop.mechanics.contacts.forces import (
     slip_length,
     slip_reserve,
 )
+from tippetop.mechanics.contacts.slip_clock import SlipComponent
 from tippetop.mechanics.contacts.slip_direction import Resisted, directions, directions_near
-from tippetop.mechanics.contacts.slip_end import SlipComponent
 from tippetop.mechanics.contacts.slip_variables import inner, scaled, size
 from tippetop.mechanics.contacts.wrench import Slip, Wrench
 from tippetop.mechanics.motion import presses
