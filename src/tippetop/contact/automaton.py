@@ -189,13 +189,14 @@ class Automaton:
             return self.touchdown(contact, time, end.state)
         return self.touch(contact, end.contact, time, end.state)
 
-    def _overtaken(self, mode: Mode, end: ModeEnd) -> Transition:
+    def _overtaken(self, mode: Mode, end: ModeEnd, _: float) -> Transition:
         """Return the end of the other velocity, which comes before that of the first."""
         assert isinstance(mode, SlipEnd)
         return Transition((), mode.of_second(), end.state)
 
-    def _go_on(self, mode: ContactMode, end: ModeEnd) -> Transition:
+    def _go_on(self, ended: Mode, end: ModeEnd, _: float) -> Transition:
         """Return the contact mode as it goes on, near an end of its velocities or not."""
+        mode = contact_mode_of(ended, end)
         try:
             if mode.is_single:
                 slips = not mode.sticks[0]
@@ -206,18 +207,21 @@ class Automaton:
             return Transition((), Status.FAILED, end.state, UNSEEN)
         return Transition((), following, end.state)
 
-    def _follow_to_end(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
+    def _follow_to_end(self, ended: Mode, end: ModeEnd, time: float) -> Transition:
         """Return the clock of the velocity that ends first; where a guard was touched by rounding,
         none does.
 
         The rolling of two contacts ends as its guard says.
         """
+        mode = contact_mode_of(ended, end)
         if not mode.is_single and end.cause == ROLLING_STOPPING:
             return self.resolve_two(time, end.state, mode.tops, Before.of(mode), 0.0)
         if mode.is_single:
             mode = self._contact_mode(off_branch(mode.top), end.state, slips=not mode.sticks[0])
         ending, _ = soonest_end(mode, end.state)
-        return self._go_on(mode, end) if ending is None else Transition((), ending, end.state)
+        if ending is None:
+            return self._go_on(mode, end, time)
+        return Transition((), ending, end.state)
 
     def _after_end(self, transient: Mode, end: ModeEnd, time: float) -> Transition:
         """Return what follows where a velocity has ended."""
@@ -230,16 +234,18 @@ class Automaton:
         resolved = self.resolve(contact, time, end.state, (slip, not slip), held=held)
         return self._with_other_surfaces(contact, time, resolved)
 
-    def _after_jam(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
+    def _after_jam(self, ended: Mode, end: ModeEnd, time: float) -> Transition:
         """Return what follows where friction has jammed contacts that slip."""
+        mode = contact_mode_of(ended, end)
         contact, state = off_branch(mode.top), end.state
         if mode.is_single:
             return self.jammed(contact, time, state) or self._strike(contact, time, state)
         jammed = TwoClosed.of(state, mode.tops, mode.rolls).jammed or contact
         return self.inconsistent(jammed, time, on_table(along_table(state), jammed), ())
 
-    def _on_other_branch(self, mode: ContactMode, ended: Mode, end: ModeEnd) -> Transition:
+    def _on_other_branch(self, ended: Mode, end: ModeEnd, _: float) -> Transition:
         """Return the mode on the branch of the law, or of its limit surface, that takes over."""
+        mode = contact_mode_of(ended, end)
         tops = list(mode.tops)
         number = max(end.contact, 0)
         tops[number] = on_other_branch(tops[number])
@@ -249,8 +255,9 @@ class Automaton:
             return Transition((), clock, end.state)
         return Transition((), following, end.state)
 
-    def _open_one(self, mode: ContactMode, ended: Mode, end: ModeEnd, time: float) -> Transition:
+    def _open_one(self, ended: Mode, end: ModeEnd, time: float) -> Transition:
         """Return what follows where the normal force of one of two contacts changes its sign."""
+        mode = contact_mode_of(ended, end)
         opening, stays = (mode.tops, mode.tops[::-1])[end.contact]
         state, slips = end.state, not mode.sticks[1 - end.contact]
         if not opens_by_zero(ended, end, opening) or (slips and _jams_alone(stays, state)):
@@ -274,11 +281,12 @@ class Automaton:
         rolls = rolling_direction(mode.contacts(mode.numbers(end.state)).forces)
         return self.resolve_two(time, end.state, mode.tops, Before.of(mode), rolls)
 
-    def _turning_ends(self, mode: ContactMode, end: ModeEnd, time: float) -> Transition:
+    def _turning_ends(self, ended: Mode, end: ModeEnd, time: float) -> Transition:
         """Return what follows where the body has stopped turning about one of two contacts.
 
         What the guard has ended is over, however much of it the error of a step leaves.
         """
+        mode = contact_mode_of(ended, end)
         state, before = end.state, Before.of(mode)
         return self.resolve_two(time, state, mode.tops, before, mode.rolls, ended=(True, True))
 
@@ -669,7 +677,7 @@ class Automaton:
             return replace(resolved, state=state)
         return resolved
 
-    def _after_tipping(self, mode: Mode, end: ModeEnd) -> Transition:
+    def _after_tipping(self, mode: Mode, end: ModeEnd, _: float) -> Transition:
         """Return the mode of a body that has tipped over its rim."""
         assert isinstance(mode, TipOnset)
         slips = not mode.contact_mode.sticks[0]
@@ -950,10 +958,10 @@ Rule: TypeAlias = Callable[[Automaton, Mode, ModeEnd, float], Transition]
 
 RULES: dict[str, Rule] = {
     COMPLETED: lambda rules, mode, end, time: Transition((), Status.COMPLETED, end.state),
-    FAILURE: lambda rules, mode, end, time: rules._after_failure(mode, end, time),
-    FLAT: lambda rules, mode, end, time: rules._after_settling(mode, end, time),
+    FAILURE: Automaton._after_failure,
+    FLAT: Automaton._after_settling,
     STOPPED: lambda rules, mode, end, time: rules._from_rest_on_face(mode.top, time, end.state, ()),
-    TILTED: lambda rules, mode, end, time: rules._after_tipping(mode, end),
+    TILTED: Automaton._after_tipping,
     TIPPING: lambda rules, mode, end, time: rules._tip(mode.top, time, end.state, ()),
     AT_REST: lambda rules, mode, end, time: Transition((), Status.AT_REST, end.state),
     LANDING: lambda rules, mode, end, time: rules._after_flight(off_branch(mode.top), end, time),
@@ -965,34 +973,22 @@ RULES: dict[str, Rule] = {
     LIFT_OFF: lambda rules, mode, end, time: rules.lift_off(
         off_branch(contact_mode_of(mode, end).top), time, mode, end
     ),
-    OPENING: lambda rules, mode, end, time: rules._open_one(
-        contact_mode_of(mode, end), mode, end, time
-    ),
-    SLIP: lambda rules, mode, end, time: rules._slips(mode, end, time),
-    ROLLING: lambda rules, mode, end, time: rules._rolls(mode, end, time),
-    ENDING: lambda rules, mode, end, time: rules._turning_ends(
-        contact_mode_of(mode, end), end, time
-    ),
-    STOPPING: lambda rules, mode, end, time: rules._follow_to_end(
-        contact_mode_of(mode, end), end, time
-    ),
-    ROLLING_STOPPING: lambda rules, mode, end, time: rules._follow_to_end(
-        contact_mode_of(mode, end), end, time
-    ),
-    SLIP_SMALL: lambda rules, mode, end, time: rules._go_on(contact_mode_of(mode, end), end),
-    SLIP_LARGE: lambda rules, mode, end, time: rules._go_on(contact_mode_of(mode, end), end),
-    BRANCH: lambda rules, mode, end, time: rules._on_other_branch(
-        contact_mode_of(mode, end), mode, end
-    ),
-    LIMIT_BRANCH: lambda rules, mode, end, time: rules._on_other_branch(
-        contact_mode_of(mode, end), mode, end
-    ),
-    ONSET_OVER: lambda rules, mode, end, time: rules._go_on(contact_mode_of(mode, end), end),
-    REOPENING: lambda rules, mode, end, time: rules._go_on(contact_mode_of(mode, end), end),
-    OVERTAKEN: lambda rules, mode, end, time: rules._overtaken(mode, end),
-    JAMMED: lambda rules, mode, end, time: rules._after_jam(contact_mode_of(mode, end), end, time),
-    REACHED_ZERO: lambda rules, mode, end, time: rules._after_end(mode, end, time),
-    ENDED: lambda rules, mode, end, time: rules._after_end(mode, end, time),
+    OPENING: Automaton._open_one,
+    SLIP: Automaton._slips,
+    ROLLING: Automaton._rolls,
+    ENDING: Automaton._turning_ends,
+    STOPPING: Automaton._follow_to_end,
+    ROLLING_STOPPING: Automaton._follow_to_end,
+    SLIP_SMALL: Automaton._go_on,
+    SLIP_LARGE: Automaton._go_on,
+    BRANCH: Automaton._on_other_branch,
+    LIMIT_BRANCH: Automaton._on_other_branch,
+    ONSET_OVER: Automaton._go_on,
+    REOPENING: Automaton._go_on,
+    OVERTAKEN: Automaton._overtaken,
+    JAMMED: Automaton._after_jam,
+    REACHED_ZERO: Automaton._after_end,
+    ENDED: Automaton._after_end,
 }
 """The rule of each cause of a mode's end, which runs and sweeps ask."""
 
