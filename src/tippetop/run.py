@@ -197,7 +197,7 @@ def simulate(
                 None,
                 (
                     status.value,
-                    trajectory.detail,
+                    trajectory.detail and f"Reason: {trajectory.detail.removesuffix('.')}.",
                     breach,
                     ambiguity_of(trajectory.events),
                     method.caution,

@@ -381,6 +381,17 @@ def test_an_adapter_that_cannot_be_used_is_a_sentence(text, sentence, tmp_path):
         comparison.compare(tmp_path / "out", [str(tmp_path / "absent.py")])
 
 
+def test_programs_whose_results_would_be_one_file_are_refused(tmp_path):
+    files = [tmp_path / "one" / "mine.py", tmp_path / "two" / "mine.py", tmp_path / "moreau.py"]
+    for file in files:
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(OWN)
+    for names in (files[:2], files[2:]):
+        with pytest.raises(tt.InvalidInput, match="has results of the same name as"):
+            comparison.compare(tmp_path / "out", list(map(str, names)))
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_run_that_would_take_too_long_is_named(tmp_path):
     results = comparison.compare(tmp_path, ["moreau"], ["restitution"], STEPS, longest=1e-9)
     assert [one["asked_step"] for one in results["moreau"]["left_out"]] == list(STEPS[1:])

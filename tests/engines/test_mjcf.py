@@ -269,7 +269,7 @@ REFUSED = {
     "inertia: .* no two across the axis are equal": model_text(
         free(BALL + '<geom type="box" size=".01 .005 .002" contype="0" conaffinity="0"/>')
     ),
-    "body 'arm': '<joint>' moves against another body": model_text(
+    "body 'arm': '<joint>' lets it move against the body around it": model_text(
         free(BALL + '<body name="arm"><joint/><geom size=".01"/></body>')
     ),
     "worldbody: body 'a', body 'b' is not one body": model_text(
@@ -313,6 +313,15 @@ REFUSED = {
     ),
     "geom 'ball'.margin: 0.001 is not 0": model_text(
         free(BALL.replace("size", 'margin="0.001" size'))
+    ),
+    r"geom2: '?ground'? is not the name of a geom": model_text(
+        free(BALL), tail='<contact><pair geom1="ball" geom2="ground"/></contact>'
+    ),
+    r"pair of None and floor.geom1 is missing \(write the name of a geom of the file\)": model_text(
+        free(BALL), tail='<contact><pair geom2="floor"/></contact>'
+    ),
+    r"mass of body 'top' is missing \(state the body's <inertial>": model_text(
+        free(BALL.replace("size", 'mass="0" size'))
     ),
     "text: '<robot>' is not MJCF": "<robot/>",
     "text: .* is not XML": "<mujoco>",

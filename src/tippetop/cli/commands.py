@@ -1,5 +1,6 @@
 """All commands, and the report of errors as one sentence with an exit code."""
 
+import os
 import sys
 import warnings
 from typing import Annotated, Any, TextIO
@@ -136,10 +137,18 @@ def run() -> None:
     """Run the command line; misuse ends with one sentence and exit code 2."""
     warnings.showwarning = _show_warning
     try:
-        app()
+        try:
+            app()
+        finally:
+            sys.stdout.flush()
     except TippetopError as error:
         typer.echo(f"tippetop: {reworded(error, WORDS)}", err=True)
         sys.exit(MISUSE)
     except BrokenPipeError:
         # The reader has closed the pipe, as in `tippetop ... | head`.
         sys.stderr.close()
+    except OSError as error:
+        # Errors of files are sentences already: this one is of the output.
+        typer.echo(f"tippetop: the output cannot be written: {error.strerror or error}", err=True)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        sys.exit(MISUSE)

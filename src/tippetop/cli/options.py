@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Concatenate, NamedTuple
 import typer
 
 import tippetop as tt
-from tippetop.support.errors import InvalidInput, is_number, short
-from tippetop.support.files import written_beside
+from tippetop.problem.problem import fields_in
+from tippetop.support.errors import MISSING, InvalidInput, is_number, short
+from tippetop.support.files import made_of, written_beside
 from tippetop.support.units import number_hint, number_in
 
 if TYPE_CHECKING:
@@ -95,12 +96,16 @@ class Choice(NamedTuple):
 
         Raises `InvalidInput` if there is no such problem.
         """
-        return self.changed(_problem_in(self.file))
+        return self.changed(_problem_in(self.file, self._stated()))
 
     def changed(self, problem: "tt.Problem") -> "tt.Problem":
         """Return a problem with the changes."""
         if self.preset is not None:
             problem = problem.model_copy(update={"body": tt.presets.body(self.preset)})
+        return problem.replace(self._stated())
+
+    def _stated(self) -> dict[str, Any]:
+        """Return the values that options state, by field."""
         changes = dict(self.settings)
         for field, value in map(_parsed, self.changes):
             if field in changes:
@@ -111,14 +116,42 @@ class Choice(NamedTuple):
                     f"is given beside {short(changes[field])} for the same field",
                 )
             changes[field] = value
-        return problem.replace(changes)
+        return changes
 
 
-def _problem_in(file: Path | None) -> "tt.Problem":
-    """Return the problem of a file in TOML, JSON or MJCF; the report's without one."""
+def _problem_in(file: Path | None, stated: Mapping[str, Any]) -> "tt.Problem":
+    """Return the problem of a file in TOML, JSON or MJCF; the report's without one.
+
+    Options state what a file in TOML or JSON lacks.
+    """
     if file is None:
         return tt.presets.report_problem()
-    return tt.read_mjcf(file) if file.suffix.lower() == ".xml" else tt.Problem.read(file)
+    if file.suffix.lower() == ".xml":
+        return tt.read_mjcf(file)
+    try:
+        return tt.Problem.read(file)
+    except InvalidInput as error:
+        if error.value is not MISSING:
+            raise
+        fields = fields_in(file)
+        filled = [name for name, value in stated.items() if _fill(fields, name, value)]
+        if not filled:
+            raise
+    with made_of(file, {name.partition(".")[0] for name in filled}):
+        return tt.Problem(**fields)
+
+
+def _fill(fields: dict[str, Any], name: str, value: Any) -> bool:
+    """Put a value into the tables of a file if they lack it, and return whether they did."""
+    *tables, last = name.split(".")
+    for table in tables:
+        fields = fields.setdefault(table, {})
+        if not isinstance(fields, dict):
+            return False
+    is_missing = last not in fields
+    if is_missing:
+        fields[last] = value
+    return is_missing
 
 
 def of_a_problem(

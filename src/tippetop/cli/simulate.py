@@ -65,6 +65,17 @@ ROWS = (
 A row without a text for a missing value is then omitted.
 """
 
+OF_THE_BALANCE = {"end_time", "initial_energy", "jellett_drift", "energy_error"}
+"""Keys of the rows that are printed for a run whose numbers are not to be trusted."""
+
+INACCURATE = 1
+"""Exit code of a run whose numbers are not to be trusted."""
+
+ROUNDING_OF_ENERGY = 1e-13
+"""Energy, relative to that at launch, below which a loss is rounding: a balance is kept to less in
+no run, and a real loss of one instant may be little more.
+"""
+
 USUAL_DIGITS = 7
 """Digits of a time that a minute change of the launch does not move."""
 
@@ -132,7 +143,10 @@ def simulate(
     as_json: Json = False,
     force: Force = False,
 ) -> None:
-    """Simulate one launch, and describe the motion in words and numbers."""
+    """Simulate one launch, and describe the motion in words and numbers.
+
+    The exit code is 1 if the numbers do not keep what the motion keeps, so that they tell nothing.
+    """
     chosen, seconds = choice.problem(), number_of("--duration", duration, "s") or 0.0
     files = {
         "out": out,
@@ -167,6 +181,7 @@ def simulate(
     uncertainties = tt.time_uncertainties(run)
     account = tt.describe(run).rounded(uncertainties)
     summary = {**tt.summarize(run), "description": str(account), "uncertainties": uncertainties}
+    is_inaccurate = summary["status"] == "inaccurate"
     if as_json:
         written = {kind: path and str(path) for kind, path in files.items()}
         show_json({**summary, **written, "problem": chosen.model_dump()})
@@ -179,6 +194,8 @@ def simulate(
             f"[dim]{summary['steps']} steps of {summary['integrator']} in {elapsed:.3g} s[/]",
             files=requested.values(),
         )
+    if is_inaccurate:
+        raise typer.Exit(INACCURATE)
 
 
 def _sample_count(problem: "tt.Problem", duration: float, requested: Iterable[str]) -> int:
@@ -238,11 +255,16 @@ def _rows(summary: dict[str, Any], jellett_conserved: bool) -> list[tuple[str, s
     numbers = {**summary, **summary["final"]}
     resisted = any(summary[f"energy_lost_{part}"] for part in ("drilling", "rolling", "air"))
     shown = [*ROWS, *(LOSS_ROWS if resisted else ()), *(FLIGHT_ROWS if summary["flights"] else ())]
+    if summary["status"] == "inaccurate":
+        shown = [row for row in ROWS if row[1] in OF_THE_BALANCE]
+    least = ROUNDING_OF_ENERGY * summary["initial_energy"]
     rows = []
     for text, key, unit, form, missing in shown:
         if key == "jellett_drift" and not jellett_conserved:
             continue
         value = numbers[key]
+        if unit == "J" and value is not None and abs(value) < least:
+            value = 0.0
         if value is not None and key in summary["uncertainties"]:
             digits = digits_left(value, summary["uncertainties"][key], USUAL_DIGITS)
             rows.append((text, f"{value:.{digits}g}" if digits else "chance decides", unit))

@@ -287,6 +287,9 @@ def _parameters(text: str, parameters: list[str]) -> dict[str, float | str]:
     numbers: dict[str, float | str] = {}
     for parameter in parameters:
         name, equals, number = parameter.partition("=")
+        if name.strip() in numbers:
+            fault = f"has the parameter {name.strip()} twice"
+            raise InvalidInput("--draw", text, "", fault, "write every parameter once")
         try:
             (numbers[name.strip()],) = _numbers([number]) if equals else []
         except ValueError:

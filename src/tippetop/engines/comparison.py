@@ -81,11 +81,22 @@ class EngineTask(NamedTuple):
 def tasks(names: Sequence[str] | None, cases: Sequence[str] | None) -> Iterator[EngineTask]:
     """Yield what programs can follow, program by program; `InvalidInput` for unknown names."""
     made = {name: adapter(name) for name in names or ADAPTERS}
+    _require_results_apart(list(made))
     chosen = [case_of(name) for name in cases] if cases else list(CASES)
     for name, one in made.items():
         for case in chosen:
             for setting in settings_of(one, case):
                 yield EngineTask(one, case, setting, results_name(name))
+
+
+def _require_results_apart(names: Sequence[str]) -> None:
+    """Refuse a program whose results would be in the same file as those of another one."""
+    by_results = {name: name for name in ADAPTERS}
+    for name in names:
+        first = by_results.setdefault(results_name(name), name)
+        if first != name:
+            fault = f"has results of the same name as {first}"
+            raise InvalidInput("engine", name, "", fault, "rename the file")
 
 
 def installed(names: Sequence[str] | None = None) -> list[str]:

@@ -68,9 +68,12 @@ def write_csv(
         raise InvalidInput("decimal", decimal, '"." or ","')
     if sep is None:
         sep = "\t" if ending == ".tsv" else ";" if decimal == "," else ","
-    if not (isinstance(sep, str) and len(sep) == 1) or sep == decimal or sep in '"\r\n':
-        accepted = "one character, and not that of decimals"
-        raise InvalidInput("sep", sep, accepted, hint='such as ";"')
+    if not (isinstance(sep, str) and len(sep) == 1) or sep in '"\r\n':
+        accepted = "one character that is neither a quotation mark nor the end of a line"
+        raise InvalidInput("sep", sep, accepted, hint='write sep=";"')
+    if sep == decimal:
+        fault = "separates the decimals of the numbers already"
+        raise InvalidInput("sep", sep, "", fault, 'write sep=";"')
     unit = frame.attrs["units"]
     is_named = {name: units and unit[name] not in ("", "1") for name in frame}
     heads = [f"{name} ({unit[name]})" if is_named[name] else name for name in frame]

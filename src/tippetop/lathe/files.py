@@ -10,7 +10,7 @@ from tippetop.lathe.fitting import TOLERANCE
 from tippetop.lathe.sheet import Reading, Sheet, read_sheet
 from tippetop.lathe.strokes import line
 from tippetop.lathe.workpiece import UNITS, Workpiece
-from tippetop.support.errors import Described, InvalidInput
+from tippetop.support.errors import Described, FileTrouble, InvalidInput
 from tippetop.support.files import in_words, made_of, named, path_of, read_text
 from tippetop.support.parsing import parse_toml
 
@@ -24,6 +24,9 @@ ACCEPTED = "a workpiece in TOML, or a profile in CSV, SVG, DXF, STL, OBJ, PLY or
 
 HEADING_UNIT = re.compile(r"[(\[{/_,\s](mm|cm|m|in|inch|inches)\b[)\]}]?\s*$", re.IGNORECASE)
 """Unit at the end of a heading, such as "r (mm)", "r [mm]", "r/mm" or "r_mm"."""
+
+OTHER_UNIT = re.compile(r"[(\[{/]\s*([^\W\d_]+\W?)\s*[)\]}]?\s*$")
+"""Word that stands in a heading where a unit stands."""
 
 STARTS = "0123456789+-."
 """First characters of numbers, also of mistyped ones; cells of a heading do not begin so."""
@@ -74,6 +77,10 @@ def read_with_remarks(
         if is_toml
         else {"profile": path.name}
     )
+    if is_toml and {"launch", "friction"} & set(stated):
+        raise FileTrouble(
+            f"{named(path)} is a problem, and not {ACCEPTED}: simulate and critical take it"
+        )
     content = {**stated, **fields}
     inserts = content.get("inserts")
     parts = {"": content}
@@ -232,6 +239,10 @@ def _from_csv(text: str, path: Path) -> _Table:
 def _unit_of(heading: list[str], path: Path) -> str | None:
     """Return the unit of lengths in a heading, None if it has none; refuse several units."""
     matches = [HEADING_UNIT.search(f" {cell}") for cell in heading]
+    for cell, match in zip(heading, matches, strict=True):
+        if match is None and OTHER_UNIT.search(f" {cell}"):
+            accepted = "a heading with a unit of m, cm, mm or in, such as r (mm)"
+            raise InvalidInput("heading", cell, accepted, file=named(path))
     units = {match[1].lower() for match in matches if match}
     units = {"in" if unit.startswith("in") else unit for unit in units}
     if len(units) > 1:

@@ -303,9 +303,7 @@ class Problem(Part):
         InvalidInput
             If it does not hold a problem.
         """
-        text = read_text(path, "a problem in TOML or JSON")
-        parse = parse_json if Path(path).suffix.lower() == ".json" else parse_toml
-        fields = parse(text, "problem", Path(path).name)
+        fields = fields_in(path)
         with made_of(path):
             return cls(**fields)
 
@@ -333,6 +331,17 @@ class Problem(Part):
         with written_beside(place, overwrite) as beside:
             beside.write_text(text, encoding="utf-8")
         return place
+
+
+# translate: drop
+def fields_in(path: Path | str) -> dict[str, Any]:
+    """Return the fields that a .toml or .json file with a problem states.
+
+    Raises `FileTrouble` if the file cannot be read, and `InvalidInput` if it is not TOML or JSON.
+    """
+    text = read_text(path, "a problem in TOML or JSON")
+    parse = parse_json if Path(path).suffix.lower() == ".json" else parse_toml
+    return parse(text, "problem", Path(path).name)
 
 
 def top_of(problem: Problem, functions: Functions = math) -> Top:

@@ -24,6 +24,9 @@ MARK = ".tippetop-"
 LONGEST_TEXT = 2**24
 """Largest text file that is read, bytes; larger ones are no problem or sweep."""
 
+CONTROL_CHARACTERS = {chr(code) for code in range(32)} - set("\t\n\r\f\x1a")
+"""Characters that texts do not have; \x1a ended them in DOS."""
+
 LONGEST_NAME = 300
 """Letters of a path that a sentence shows at most."""
 
@@ -157,7 +160,8 @@ def read_text(
 ) -> str:
     """Return the text of a file; refusals say that the file is not `accepted`.
 
-    `decode` returns the text of its bytes, or None if they are none; by default they are UTF-8.
+    `decode` returns the text of its bytes, or None if they are none; by default they are UTF-8, or
+    the code page that Windows has in western countries.
     Raises `FileTrouble` if the file cannot be read, is no text, or is longer than `LONGEST_TEXT`.
     """
     with in_words(path, "read"), Path(path).open("rb") as file:
@@ -166,17 +170,22 @@ def read_text(
         raise FileTrouble(
             f"{named(path)} has more than {LONGEST_TEXT:,} bytes, and is not {accepted}"
         )
-    text = _utf8(content) if decode is None else decode(content)
+    text = _utf8_or_cp1252(content) if decode is None else decode(content)
     if text is None:
         raise FileTrouble(f"{named(path)} is not a text file, and not {accepted}")
     return text
 
 
-def _utf8(content: bytes) -> str | None:
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return None
+def _utf8_or_cp1252(content: bytes) -> str | None:
+    """Return a text in UTF-8, or else in the code page 1252 of Windows, which contains the letters
+    of Latin-1; None of bytes that no text has.
+    """
+    for encoding in ("utf-8-sig", "cp1252"):
+        with contextlib.suppress(UnicodeDecodeError):
+            text = content.decode(encoding)
+            if encoding == "utf-8-sig" or not set(text) & CONTROL_CHARACTERS:
+                return text
+    return None
 
 
 @contextmanager

@@ -28,9 +28,8 @@ def require_no_field(top: Top) -> None:
         slope = math.atan2(math.hypot(*field.slope), top.gravity)
         accepted = "0: on a slope a spinning top drifts and gains speed, and no motion is steady"
         raise InvalidInput("table.slope", slope, accepted)
-    raise InvalidInput(
-        "air", Described("this one"), "none: air brakes every spin, and no motion is steady"
-    )
+    fault = "brakes every spin, and no motion is steady"
+    raise InvalidInput("air", Described("the air of this problem"), "", fault, "omit it")
 
 
 def require_sphere(top: Top) -> None:

@@ -63,7 +63,8 @@ def geom_of(attributes: Mapping[str, str], field: str, frame: Pose, angles: Angl
             raise InvalidInput(f"{field}.{name}", attributes[name], "", "is no attribute of geoms")
     kind = attributes.get("type", "mesh" if "mesh" in attributes else "sphere")
     if kind not in SIZES and kind not in WITHOUT_VOLUME:
-        raise InvalidInput(f"{field}.type", kind, "a type of geoms")
+        accepted = f"a type of geoms: {', '.join([*SIZES, *WITHOUT_VOLUME])}"
+        raise InvalidInput(f"{field}.type", kind, accepted)
     sizes = _checked_sizes(attributes, field, kind)
     if "fromto" in attributes and kind in ("capsule", "cylinder", "ellipsoid", "box"):
         pose, sizes = _between(attributes, field, kind, sizes)

@@ -81,7 +81,8 @@ class MjcfModel:
     def mass(self, top: Members) -> Mass:
         """Return mass, centre of mass and inertia of the free body, in its frame."""
         if not top.masses or not sum(mass.mass for mass in top.masses) > 0.0:
-            raise InvalidInput(f"body '{top.name}'", MISSING, "", hint="its mass: no geom has one")
+            hint = "state the body's <inertial>, or give a geom in it a mass or a density"
+            raise InvalidInput(f"mass of body '{top.name}'", MISSING, "", hint=hint)
         together = total(top.masses)
         wanted_total = number(self.compiler, "settotalmass", "compiler", -1.0)
         return together.scaled(wanted_total / together.mass) if wanted_total > 0.0 else together
@@ -119,13 +120,21 @@ class MjcfModel:
     def _pairs(self) -> dict[frozenset[str], Pair]:
         """Return the friction of the pairs that the file lists."""
         pairs = {}
+        names_of_geoms = {element.get("name") for element in self.document.root.iter("geom")}
         for element in self.document.parts("contact"):
             if element.tag != "pair":
                 if element.tag == "exclude" and "world" not in element.attrib.values():
                     continue
-                raise InvalidInput(f"contact.{element.tag}", _shown(element), "", "is not read")
+                hint = "leave it out, and let contype and conaffinity say what touches"
+                raise InvalidInput(
+                    f"contact.{element.tag}", _shown(element), "", "is not read", hint
+                )
             attributes = self.document.attributes(element, MAIN)
             field = f"pair of {attributes.get('geom1')} and {attributes.get('geom2')}"
+            for name in ("geom1", "geom2"):
+                if attributes.get(name) not in names_of_geoms:
+                    value = attributes.get(name, MISSING)
+                    raise InvalidInput(f"{field}.{name}", value, "the name of a geom of the file")
             values = numbers(attributes, "friction", field, (1, 2, 3, 4, 5)) or ()
             values = (*values, *PAIR_FRICTION[len(values) :])
             if values[0] != values[1] or values[3] != values[4]:
@@ -173,7 +182,8 @@ class MjcfModel:
         pose = frame.of(pose_of(element.attrib, field, self.angles))
         if element.tag == "body" and any(child.tag in ("joint", "freejoint") for child in element):
             if members is not self.world or name != "world":
-                raise InvalidInput(field, "<joint>", "", "moves against another body")
+                fault = "lets it move against the body around it, and one rigid body is read"
+                raise InvalidInput(field, "<joint>", "", fault, "leave the joint out")
             self.free.append((element, pose, inner_class))
             return
         inner_name = name if element.tag == "frame" else field
