@@ -199,6 +199,115 @@ def time_of_tilt(mu: float, tilt: float) -> float:
     return float(solve_ivp(rates, (0.0, 5.0), [0.0, 0.0], **options).t_events[0][0])
 
 
+def time_to_turn(slope: float, rate: float, tilt: float, mu: float = math.inf) -> float:
+    """Return the time until `TALL`, which leans down a slope over its rim with a rate at first, has
+    a tilt: it turns about the rim that sticks, or slides on it at the speed at which it starts.
+    """
+    east, down = GRAVITY * math.sin(slope), GRAVITY * math.cos(slope)
+
+    def rates(_: float, y: list[float]) -> list[float]:
+        theta, speed = y
+        across = RADIUS * math.cos(theta) - HEIGHT * math.sin(theta)
+        height = RADIUS * math.sin(theta) + HEIGHT * math.cos(theta)
+        if math.isinf(mu):
+            about_rim = TALL.I1 + TALL.mass * (RADIUS**2 + HEIGHT**2)
+            return [speed, TALL.mass * (height * east - across * down) / about_rim]
+        arm = mu * height - across
+        pressing = TALL.mass * (down - height * speed**2)
+        return [speed, pressing * arm / (TALL.I1 - TALL.mass * across * arm)]
+
+    def reached(_: float, y: list[float]) -> float:
+        return y[0] - tilt
+
+    reached.terminal = True
+    options = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "events": reached}
+    return float(solve_ivp(rates, (0.0, 5.0), [0.0, rate], **options).t_events[0][0])
+
+
+STEEP = math.atan(RADIUS / HEIGHT) + 0.05
+"""A slope on which no force in the face of `TALL` holds it."""
+
+
+@pytest.mark.parametrize(
+    ("mu", "slope", "sticks"), [(1.5, STEEP, True), (0.42, STEEP, True), (0.42, 0.53, False)]
+)
+def test_a_body_at_rest_tips_down_a_steep_slope(mu: float, slope: float, sticks: bool) -> None:
+    """It turns about its rim where friction holds that, if not the face, else slides and tips."""
+    table = tt.Table(slope=slope, azimuth=2.0)
+    problem = launched(0.0, 0.0, TALL, table=table, friction=tt.CoulombFriction(mu=mu))
+    run = tilted(problem, 0.1)
+    assert run["event_kind"].values[0] == "tips over its rim"
+    assert ("stick" in run["event_kind"].values) == sticks
+    expected = time_to_turn(slope, 0.0, 0.1, math.inf if sticks else mu)
+    assert float(run["end_time"]) == pytest.approx(expected, rel=1e-9)
+    assert float(run["energy_error"]) < 1e-13
+
+
+def test_a_body_slides_down_a_steep_slope_with_little_friction() -> None:
+    mu = 0.2
+    table = tt.Table(slope=STEEP)
+    run = tt.simulate(
+        launched(0.0, 0.0, TALL, table=table, friction=tt.CoulombFriction(mu=mu)), 0.5, samples=3
+    )
+    assert run.attrs["status"] == "completed"
+    assert run["event_kind"].values.tolist() == ["slip"]
+    acceleration = GRAVITY * (math.sin(STEEP) - mu * math.cos(STEEP))
+    assert float(run["x"][-1]) == pytest.approx(acceleration / 8, rel=1e-9)
+
+
+@pytest.mark.parametrize(("rate", "azimuth"), [(2.0, 0.4), (-3.5, 0.4)])
+def test_a_body_launched_flat_with_a_rate_of_tilt_rocks(rate: float, azimuth: float) -> None:
+    """Its rim stays on the table: it rises, turns round and lands, or falls over."""
+    problem = launched(0.0, 0.0, TALL, friction=tt.CoulombFriction(mu=2.0)).replace(
+        {"launch.tilt_rate": rate, "launch.azimuth": azimuth}
+    )
+    start = problem.start()
+    assert start.velocity[2] == pytest.approx(abs(rate) * RADIUS, rel=1e-15)
+    reach = 0.03
+    run, solution = tt.simulate(
+        problem, 3.0, samples=21, dense=True, until=lambda state: state.tilt - reach
+    )
+    assert run["event_kind"].values[0] == "tips over its rim"
+    expected = time_to_turn(0.0, abs(rate), reach)
+    assert float(run["end_time"]) == pytest.approx(expected, rel=1e-10)
+    lean = float(solution(0.5 * expected).azimuth) - azimuth
+    assert math.cos(lean) == pytest.approx(math.copysign(1.0, rate), abs=1e-12)
+    assert float(run["energy_error"]) < 1e-12
+
+
+def test_a_body_tips_where_its_friction_grows_to_that() -> None:
+    """Down a slope under viscous friction: the tilt grows with the cube of the time."""
+    mu, slope = 0.5, 0.5
+    east, down = GRAVITY * math.sin(slope), GRAVITY * math.cos(slope)
+    limit = RADIUS / (mu * HEIGHT)
+    final = east / (mu * down)
+    assert limit < final
+    crossing = -math.log(1.0 - limit / final) / (mu * down)
+
+    def rates(_: float, y: list[float]) -> list[float]:
+        theta, speed, velocity = y
+        across = RADIUS * math.cos(theta) - HEIGHT * math.sin(theta)
+        height = RADIUS * math.sin(theta) + HEIGHT * math.cos(theta)
+        friction = mu * (velocity - height * speed)
+        arm = friction * height - across
+        normal = TALL.mass * (down - height * speed**2)
+        normal /= 1.0 - TALL.mass * across * arm / TALL.I1
+        return [speed, normal * arm / TALL.I1, east - friction * normal / TALL.mass]
+
+    def reached(_: float, y: list[float]) -> float:
+        return y[0] - 0.5
+
+    reached.terminal = True
+    options = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-16, "events": reached}
+    tips = solve_ivp(rates, (0.0, 5.0), [0.0, 0.0, limit], **options).t_events[0][0]
+    friction, table = tt.ViscousFriction(mu=mu), tt.Table(slope=slope, azimuth=0.3)
+    run = tilted(launched(0.0, 0.0, TALL, friction=friction, table=table), 0.5)
+    assert run["event_kind"].values.tolist() == ["tips over its rim", "until"]
+    assert float(run["event_time"][0]) == pytest.approx(crossing, rel=1e-12)
+    assert float(run["end_time"]) == pytest.approx(crossing + tips, rel=1e-9)
+    assert float(run["energy_error"]) < 1e-12
+
+
 def tilted(problem: tt.Problem, tilt: float) -> xr.Dataset:
     """Return the run to the instant at which the tilt is reached."""
     return tt.simulate(problem, 3.0, samples=21, until=lambda state: state.tilt - tilt)

@@ -86,15 +86,16 @@ from tippetop.mechanics.contacts.slip_variables import (
 )
 from tippetop.mechanics.contacts.wrench import Slip, Wrench
 from tippetop.mechanics.face_motion import (
+    direction_against,
+    face_gap_rate,
     face_speed,
     is_held_on_face,
     law_of_face,
+    leaning_direction,
     lying_flat,
     pressure_reserve,
     rim_speed,
-    sinking_rim,
     tipping_direction,
-    turning_of_face,
 )
 from tippetop.mechanics.flight.free_motion import gap, gap_rate
 from tippetop.mechanics.impacts.jamming import past_jamming, stuck_at_once
@@ -142,6 +143,10 @@ class Automaton:
     def launch(self, state: State) -> Transition:
         """Return the first mode: flight, what follows an impact, or contact."""
         lowest = self.top.body.lowest_at(state.axis[2])
+        if lies_flat(lowest, state.axis) and rim_speed(state.momentum, lowest) > SLOWEST_REBOUND:
+            launched = self._launch_from_face(lowest, state)
+            if launched is not None:
+                return launched
         if self.liftoff != "fly":
             return self.resting(lowest, 0.0, state)
         if gap(state, lowest) > TOUCHING:
@@ -152,6 +157,19 @@ class Automaton:
         if rate < -TOUCHING:
             return self.touchdown(lowest, 0.0, state)
         return self.resting(lowest, 0.0, state)
+
+    def _launch_from_face(self, contact: Top, state: State) -> Transition | None:
+        """Return the first mode of a body that starts flat with a rate of tilt, if it touches: its
+        rim leaves the table, strikes it, or stays on it while the body tips.
+        """
+        if gap(state, contact) > TOUCHING:
+            return None
+        rate = face_gap_rate(state, contact)
+        if rate < -TOUCHING:
+            return self.touchdown(contact, 0.0, state)
+        if rate > TOUCHING and self.liftoff == "fly":
+            return Transition((), Flight(contact, Start.REBOUND), state)
+        return self._tip(contact, 0.0, state, leaning_direction(state, contact), ())
 
     def follow(self, mode: Mode, end: ModeEnd, time: float) -> Transition:
         """Return what follows the end of a mode, by the rule of its cause in `RULES`."""
@@ -597,9 +615,8 @@ class Automaton:
         """Go on from an impact of a face without rebound: rock on over the rim, or lie down."""
         if rim_speed(state.momentum, contact) <= SLOWEST_REBOUND:
             return self.lie_down(contact, time, state, events, lands=True)
-        x, y = sinking_rim(turning_of_face(state.momentum, contact))
-        up = state.axis[2]
-        return self._onto_rim(contact, time, state, (up * x, up * y), events)
+        direction = leaning_direction(state, contact)
+        return self._onto_rim(contact, time, state, direction, events)
 
     def on_face(
         self, contact: Top, time: float, state: State, events: tuple[Event, ...]
@@ -612,42 +629,63 @@ class Automaton:
         moves = bool(face_speed(state.velocity[:2], state.momentum, contact) > REST)
         if not moves and is_set_valued(contact.friction):
             return self._from_rest_on_face(contact, time, state, events)
-        mode = FaceMode(contact, law_type)
-        if pressure_reserve(mode.forces(mode.numbers(state)), contact) <= 0.0:
-            return self._tip(contact, time, state, events)
-        return Transition(events, mode, state)
+        return self._slide_on_face(FaceMode(contact, law_type), time, state, events)
 
     def _from_rest_on_face(
         self, contact: Top, time: float, state: State, events: tuple[Event, ...]
     ) -> Transition:
-        """Return what follows at rest on a face: the end of the run, or slip down the slope.
+        """Return what follows at rest on a face: the end of the run, slip down the slope, or where
+        the face cannot hold the pressure tipping over its rim, which may stick.
 
-        That begins with `SLOWEST_ON_FACE`, which has a direction.
+        Slip begins with `SLOWEST_ON_FACE`, which has a direction.
         """
-        held = FaceMode(contact, law_of_face(contact, self.face_pressure), slips=False)
+        law_type = law_of_face(contact, self.face_pressure)
+        held = FaceMode(contact, law_type, slips=False)
         forces = held.forces(held.numbers(state))
-        if pressure_reserve(forces, contact) <= 0.0:
-            return self._tip(contact, time, state, events)
-        if is_held_on_face(state.axis, contact):
+        x, y, _ = forces.force
+        holds = is_held_on_face(state.axis, contact)
+        slips = state
+        if not holds:
+            factor = -SLOWEST_ON_FACE * (x * x + y * y) ** -0.5
+            slips = state._replace(velocity=(factor * x, factor * y, 0.0))
+        mode = held if holds else FaceMode(contact, law_type)
+        if pressure_reserve(mode.forces(mode.numbers(slips)), contact) <= 0.0:
+            return self._tip(contact, time, state, direction_against(x, y, state.axis[2]), events)
+        if holds:
             event = Event(EventKind.RESTS, time, surface=contact.number)
             return Transition((*events, event), Resting(contact, held), state)
-        x, y, _ = forces.force
-        factor = -SLOWEST_ON_FACE * (x * x + y * y) ** -0.5
-        slips = state._replace(velocity=(factor * x, factor * y, 0.0))
         event = Event(EventKind.SLIP, time, surface=contact.number)
-        mode = FaceMode(contact, held.law_type)
         return Transition((*events, event), mode, slips)
 
-    def _tip(
+    def _slide_on_face(
+        self, mode: FaceMode, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
+        """Return the mode in which a face slides, or where it cannot hold the pressure tips."""
+        if pressure_reserve(mode.forces(mode.numbers(state)), mode.top) <= 0.0:
+            return self._tip_sliding(mode.top, time, state, events)
+        return Transition(events, mode, state)
+
+    def _tip_sliding(
         self, contact: Top, time: float, state: State, events: tuple[Event, ...]
     ) -> Transition:
-        """Return the mode in which the body begins to tip over its rim."""
+        """Return the mode in which a body that slides on its face begins to tip over its rim."""
         direction = tipping_direction(state, contact)
         if direction is None:
             detail = (
                 "the pressure has come to the rim of the face, over which nothing tips the body"
             )
             return Transition(events, Status.FAILED, state, detail)
+        return self._tip(contact, time, state, direction, events)
+
+    def _tip(
+        self,
+        contact: Top,
+        time: float,
+        state: State,
+        direction: Horizontal,
+        events: tuple[Event, ...],
+    ) -> Transition:
+        """Return the mode in which the body begins to tip over its rim into a direction."""
         event = Event(EventKind.TIPS, time, surface=contact.number)
         return self._onto_rim(contact, time, state, direction, (*events, event))
 
@@ -673,6 +711,14 @@ class Automaton:
         if isinstance(following, ContactMode):
             onset = TipOnset(contact, following, direction)
             return replace(resolved, next=onset, state=state)
+        if isinstance(following, SlipOnset):
+            u, v, sinking = state.velocity
+            p, q = following.directions[0][:2]
+            planar = not state.momentum[2] and abs(p * y - q * x) <= BARELY_TILTED
+            p, q = ((p * x + q * y) * x, (p * x + q * y) * y) if planar else (p, q)
+            velocity = (u + SLOWEST_ON_FACE * p, v + SLOWEST_ON_FACE * q, sinking)
+            onset = TipOnset(contact, edge, direction, planar)
+            return replace(resolved, next=onset, state=state._replace(velocity=velocity))
         if isinstance(following, Flight):
             return replace(resolved, state=state)
         return resolved
@@ -962,7 +1008,7 @@ RULES: dict[str, Rule] = {
     FLAT: Automaton._after_settling,
     STOPPED: lambda rules, mode, end, time: rules._from_rest_on_face(mode.top, time, end.state, ()),
     TILTED: Automaton._after_tipping,
-    TIPPING: lambda rules, mode, end, time: rules._tip(mode.top, time, end.state, ()),
+    TIPPING: lambda rules, mode, end, time: rules._tip_sliding(mode.top, time, end.state, ()),
     AT_REST: lambda rules, mode, end, time: Transition((), Status.AT_REST, end.state),
     LANDING: lambda rules, mode, end, time: rules._after_flight(off_branch(mode.top), end, time),
     TOUCH: lambda rules, mode, end, time: rules.touch(

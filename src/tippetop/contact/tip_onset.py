@@ -64,6 +64,10 @@ class TipOnset(Mode):
     """The mode in which it tips: the edge slips or sticks."""
     direction: Horizontal
     """The direction into which the axis leans at first."""
+    planar: bool = False
+    """Whether the motion is in the plane of that direction: then rounding moves nothing out of it,
+    which friction on slip that only begins would pull back at once.
+    """
 
     name: ClassVar[str] = "tipping"
 
@@ -209,7 +213,16 @@ class TipOnset(Mode):
         x, y = _turned(directions[place], turn)
         numbers = [each[place] for each in points]
         axis = (sizes[place] * x, sizes[place] * y, numbers[2])
-        return [*self.contact_mode.rates((*axis, *numbers[3:]))]
+        rates = [*self.contact_mode.rates((*axis, *numbers[3:]))]
+        return self._in_plane(rates) if self.planar else rates
+
+    def _in_plane(self, rates: list[float]) -> list[float]:
+        """Return the part of the rates that keeps the motion in its plane."""
+        x, y = self.direction
+        axis, turning = x * rates[0] + y * rates[1], x * rates[4] - y * rates[3]
+        sliding = [x * rates[k] + y * rates[k + 1] for k in range(6, len(rates), 2)]
+        along = [number for speed in sliding for number in (x * speed, y * speed)]
+        return [x * axis, y * axis, rates[2], -y * turning, x * turning, 0.0, *along]
 
 
 def _sizes(points: list[list[float]], directions: Sequence[Horizontal]) -> list[float]:

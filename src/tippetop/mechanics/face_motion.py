@@ -19,6 +19,11 @@ from tippetop.mechanics.surfaces.surface import Surface, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
+AT_RIM = 1e-12
+"""Part of its radius by which the centre of pressure may be within the rim, by rounding, where its
+guard says that it has come there.
+"""
+
 
 class FaceForces(NamedTuple):
     """What the table does to a body on its face."""
@@ -175,12 +180,28 @@ def sliding_on_face(
     return forces_on_face(axis, friction, normal, normal * traction.torque, top)
 
 
+def leaning_direction(state: State, top: Top) -> Horizontal:
+    """Return the direction into which the axis of a body on its face begins to lean, of floats."""
+    x, y = sinking_rim(turning_of_face(state.momentum, top))
+    up = 1.0 if state.axis[2] > 0.0 else -1.0
+    return (up * x, up * y)
+
+
+def direction_against(x: float, y: float, up: float) -> Horizontal:
+    """Return the direction into which the axis leans over the rim that a force moves the pressure
+    to, for an axis up (1) or down (-1).
+    """
+    factor = -up * (x * x + y * y) ** -0.5
+    return (factor * x, factor * y)
+
+
 def tipping_direction(state: State, top: Top) -> Horizontal | None:
     """Return the direction into which the axis leans where a body tips over its rim, of floats;
     None where it does not.
 
     It tips over the point of the rim that slips outwards, at e with v.e_t = -w a1, if the law at a
-    point moves the centre of pressure beyond that.
+    point moves the centre of pressure to that or beyond it: to it where the pressure has come to
+    the rim by a force that grows.
     """
     (u, v), outer = state.velocity[:2], float(face_radii(top.surface)[1])
     height = float(support_at(state.axis, top.surface)[0])
@@ -193,7 +214,8 @@ def tipping_direction(state: State, top: Top) -> Horizontal | None:
     x, y = (slip * u - drilled * v) / square, (slip * v + drilled * u) / square
     turning = (0.0, 0.0, drilled / outer)
     force = top.friction.traction((slip * x, slip * y), turning)[0]
-    if not height * float(-(force[0] * x + force[1] * y)) > outer:
+    moved = height * float(-(force[0] * x + force[1] * y))
+    if not moved >= (1.0 - AT_RIM) * outer:
         return None
     up = 1.0 if state.axis[2] > 0.0 else -1.0
     return (up * x, up * y)

@@ -15,6 +15,7 @@ from pydantic import model_validator
 
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.contacts.slip_variables import is_slipping, size, slip_of
+from tippetop.mechanics.face_motion import face_radii
 from tippetop.mechanics.field import OuterField
 from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.motion import (
@@ -24,7 +25,7 @@ from tippetop.mechanics.motion import (
     sliding_contact,
 )
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import Hull, sizes
+from tippetop.mechanics.surfaces.hull import Hull, is_edge, sizes
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.vectors import Functions, Vector
 from tippetop.mechanics.view import Angles, PoleExact, state_from_angles
@@ -165,6 +166,10 @@ class Problem(Part):
         touching = on_table(state_from_angles(angles, top, PoleExact(functions)), top)
         touches = launch.gap == 0.0
         east, north, sinking = touching.velocity
+        if is_edge(top.surface):
+            # The rim of a face that tilts stays on the table, and the middle rises.
+            is_flat = PoleExact(functions).sin(launch.tilt) == 0.0
+            sinking = sinking + is_flat * face_radii(top.surface)[1] * abs(launch.tilt_rate)
         velocity = (touches * east, touches * north, touches * sinking)
         if launch.velocity is not None:
             x, y, up = launch.velocity
