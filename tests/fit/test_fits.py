@@ -5,6 +5,7 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 from typer.testing import CliRunner
 
 import tippetop as tt
@@ -284,6 +285,53 @@ def test_the_error_of_a_time_in_steps_is_that_of_its_noise():
     )
     assert np.isnan(unknown.errors["friction.mu"])
     assert "without a stated noise" in unknown.cautions[0]
+
+
+def test_a_decay_of_another_kind_is_cautioned():
+    """Thirteen rows of an exponential decay, fitted by drilling, whose torque is constant."""
+    times = np.linspace(0.0, 3.0, 13)
+    rates = 1480.0 * np.exp(-0.2 * times) + np.random.default_rng(14).normal(0.0, 1.0, 13)
+    upright = TRUE.replace(
+        {
+            "friction": tt.ContensouFriction(mu=0.3, patch_radius=1e-3),
+            "launch": tt.Launch(tilt=0.0, spin=150.0),
+        }
+    )
+    data = tt.Measurement.of_spin(times, rates)
+    fitted = tt.fit(upright, data, ["friction.mu", "launch.spin"], starts=1)
+    assert any("not random" in caution for caution in fitted.cautions)
+
+
+def test_a_guess_may_turn_over_later_than_the_top_did():
+    slow, fast = TRUE.replace({"friction.mu": 0.5}), TRUE.replace({"friction.mu": 0.6})
+    seen = float(tt.simulate(fast, 9.0, samples=2)["turnover_time"])
+    assert float(tt.simulate(slow, 9.0, samples=2)["turnover_time"]) > seen
+    clock = tt.Measurement.of_events({"turnover_time": seen}, noise=0.1)
+    fitted = tt.fit(slow, clock, "friction.mu", starts=1)
+    assert abs(fitted.values["friction.mu"] - 0.6) < 2.0 * fitted.errors["friction.mu"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("noise", [1.5, None])
+def test_a_fast_film_from_the_side_ends_as_near_as_a_search_from_the_truth(noise):
+    """A second of the tip at 240 pictures, to 0.3 mm: SciPy's own search from the truth, by the
+    residuals alone, ends no nearer.
+    """
+    true = tt.presets.report_problem(spin=140.0)
+    times = np.arange(0.0, 1.0, 1.0 / 240.0)
+    run = tt.simulate(true, 1.0, times=np.append(times, 1.0)).isel(time=slice(0, -1))
+    axis = 0.026 * run["axis"].values
+    seen = np.stack([run["x"].values + axis[:, 0], run["height"].values + axis[:, 2]], 1) / PIXEL
+    seen += np.random.default_rng(15).normal(0.0, 1.5, seen.shape)
+    film = tt.Measurement.of_point(times, *seen.T, "side", scale=PIXEL, noise=noise)
+    fitted = tt.fit(true.replace({"launch.spin": 144.0, "friction.mu": 0.29}), film, BOTH)
+    search = search_of(fitted)
+    truth = np.array([0.3, 140.0, 0.0, 0.0, 0.0])
+    reached = least_squares(search.residuals, truth, x_scale=search.model.scales(truth))
+    variance = 1.0 if noise else 2.0 * reached.cost / fitted.degrees_of_freedom
+    assert fitted.cost < 2.0 * reached.cost + 0.1 * variance
+    assert abs(fitted.values["launch.spin"] - 140.0) < 4.0 * fitted.errors["launch.spin"]
+    assert fitted.cautions == ()
 
 
 def test_several_launches_are_one_fit():

@@ -7,7 +7,7 @@ import pytest
 
 import tippetop as tt
 from campaigns import seeds
-from tippetop.fit.improve import BowlFamily, standing_duration
+from tippetop.fit.improve import BowlFamily, Trial, standing_duration
 from tippetop.fit.standing import CLOSE, least_passing
 
 CREEP = tt.ContensouFriction(mu=0.3, patch_radius=5e-4)
@@ -108,6 +108,29 @@ def test_goals_are_met_better_than_by_the_least_spin(goal):
     better = tt.improve(tt.presets.WOODEN, goal, spin=spin, trials=8)
     measure = turning_over if goal == "fastest" else lying
     assert measure(better.body, spin) <= measure(least.body, spin)
+    assert better.launch_spin == spin
+    assert abs(measure(better.body, spin)) == pytest.approx(better.seconds, abs=0.02)
+    # Improved again, it is not worse, and what it was before is what was claimed.
+    again = tt.improve(better.body, goal, spin=spin, trials=2)
+    assert again.seconds_before == better.seconds
+    gain = better.seconds - again.seconds if goal == "fastest" else again.seconds - better.seconds
+    assert gain >= 0.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("goal", ["fastest", "stands longest"])
+def test_times_that_are_claimed_are_those_of_runs(goal):
+    """The report's top with a stem stands from 190 rad/s, and not from 20."""
+    problem = tt.Problem(
+        body=tt.presets.REPORT_STEM, friction=CREEP, launch=tt.Launch(tilt=0.1, spin=1.0)
+    )
+    trial = Trial(BowlFamily(0.02, 700.0, 1e-3, 1.5e-3, None, 9.8, 0.1), problem, goal)
+    trial.spin = 20.0
+    assert trial.measured(problem) == math.inf
+    trial.spin = 190.0
+    measure = turning_over if goal == "fastest" else lying
+    measured = measure(tt.presets.REPORT_STEM, 190.0)
+    assert trial.measured(problem) == pytest.approx(measured, abs=0.02)
 
 
 def turning_over(body, spin):

@@ -118,6 +118,16 @@ def test_frequencies_are_turns_a_minute_without_sign(written, unit, size):
     assert data.noise == pytest.approx([6.0])
 
 
+def test_noise_of_a_film_has_a_unit(written):
+    data = tt.read_measurement(
+        written("T (s);x in mm;y in mm\n0;1,5;2\n0,1;3;5\n"), view="side", noise="0.3mm"
+    )
+    assert np.allclose(data.values, [[1.5e-3, 2e-3], [3e-3, 5e-3]])
+    assert data.noise == pytest.approx([3e-4, 3e-4])
+    sound = tt.read_measurement(written("T (s),f (Hz)\n0,20\n1,18\n"))
+    assert sound.values[:, 0].tolist() == [1200.0, 1080.0]
+
+
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
 def test_encodings_of_spreadsheets(tmp_path, encoding):
     path = tmp_path / "höhe.csv"

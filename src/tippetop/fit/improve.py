@@ -92,6 +92,9 @@ class ImprovedTop:
     >>> top = tt.ImprovedTop(body, piece, "lowest spin", spin=150.0, before=none, sizes=sizes)
     >>> print(str(top).splitlines()[0])
     lowest spin: turns over and stands from 150 rad/s (before: no spin that was tried)
+    >>> top = tt.ImprovedTop(body, piece, "fastest", 150.0, none, sizes, 195.0, 1.84, none)
+    >>> print(str(top).splitlines()[0])
+    fastest: turns over in 1.84 s from 195 rad/s (before: does not stand from it)
     """
 
     body: Body
@@ -110,6 +113,14 @@ class ImprovedTop:
     """Lengths of the solid, m: radius, wall, stem (its radius) and tip (height of its end over the
     sphere's centre).
     """
+    launch_spin: float = math.nan
+    """Spin of the launches of which the time was asked, rad/s; NaN where the goal is the lowest."""
+    seconds: float = math.nan
+    """Time after which a run from that spin has turned over, s, or for which it stands, by the
+    goal; NaN where the goal is the lowest spin."""
+    seconds_before: float = math.nan
+    """The same of the body that it was made from; inf for "fastest" and 0 for "stands longest" if
+    that does not stand from this spin."""
 
     def __str__(self) -> str:
         lengths = ", ".join(f"{name} {1e3 * size:.3g} mm" for name, size in self.sizes.items())
@@ -117,10 +128,16 @@ class ImprovedTop:
             f"{number:.4g} rad/s" if math.isfinite(number) else "no spin that was tried"
             for number in (self.spin, self.before)
         )
-        return (
-            f"{self.goal}: turns over and stands from {spin} (before: {before})\n"
-            f"{lengths}; mass {1e3 * self.body.mass:.3g} g"
-        )
+        stands = f"turns over and stands from {spin} (before: {before})"
+        lines = [f"{self.goal}: {stands}", f"{lengths}; mass {1e3 * self.body.mass:.3g} g"]
+        if self.goal != "lowest spin":
+            verb = "turns over in" if self.goal == "fastest" else "stands for"
+            stood = 0.0 < self.seconds_before < math.inf
+            shown = f"{self.seconds_before:.3g} s" if stood else "does not stand from it"
+            lines[0] = f"{verb} {self.seconds:.3g} s from {self.launch_spin:.4g} rad/s"
+            lines[0] = f"{self.goal}: {lines[0]} (before: {shown})"
+            lines.insert(1, stands)
+        return "\n".join(lines)
 
 
 def improve(
@@ -235,6 +252,11 @@ def improve(
     if present is not None and trial.value(present) <= trial.value(best):
         best = present
     workpiece = family.workpiece(best)
+    values = (math.nan, math.nan)
+    if goal != "lowest spin":
+        values = (trial.value(best), trial.measured(problem))
+    if goal == "stands longest":
+        values = (-values[0], max(-values[1], 0.0))
     return ImprovedTop(
         Body.turned(workpiece),
         workpiece,
@@ -242,6 +264,8 @@ def improve(
         trial.least_spin(best),
         before,
         {"radius": family.radius, **dict(zip(("wall", "tip", "stem"), best.tolist(), strict=True))},
+        trial.spin,
+        *values,
     )
 
 
@@ -477,16 +501,15 @@ class Trial:
         self.family, self.problem, self.goal, self.spin = family, problem, goal, math.nan
         self._values: dict[tuple[float, ...], float] = {}
 
-    def launch(self, at: Array, spin: float) -> Problem:
-        """Return the launch of a bowl with a spin, rad/s."""
-        made = self.problem.model_copy(update={"body": self.family.body(at)})
-        return made.replace({"launch.spin": spin})
+    def launch(self, at: Array) -> Problem:
+        """Return a launch of a bowl, with some spin."""
+        return self.problem.model_copy(update={"body": self.family.body(at)})
 
     def least_spin(self, at: Array) -> float:
         """Return the least spin from which runs turn over and stand, rad/s; inf for none."""
         place = ("spin", *at.tolist())
         if place not in self._values:
-            self._values[place] = least_standing_spin(self.launch(at, 1.0))
+            self._values[place] = least_standing_spin(self.launch(at))
         return self._values[place]
 
     def value(self, at: Array) -> float:
@@ -495,7 +518,7 @@ class Trial:
             return self.least_spin(at)
         place = (self.goal, *at.tolist())
         if place not in self._values:
-            self._values[place] = self._measured(at)
+            self._values[place] = self.measured(self.launch(at))
         return self._values[place]
 
     def best_of(self, starts: list[Array], trials: int) -> Array:
@@ -520,7 +543,7 @@ class Trial:
         spin = HARDER * least
         while spin < FASTER**4 * least:
             for at in starts:
-                if self._stands_from(at, spin):
+                if stands_from(self.launch(at), spin):
                     return at, spin
             spin *= HARDER
         return starts[0], self.least_spin(starts[0])
@@ -531,23 +554,27 @@ class Trial:
             if self.goal != "lowest spin":
                 return self.value(at)
             spin = (1.0 - GAIN) * bound
-            return spin if self._stands_from(at, spin) else math.inf
+            return spin if stands_from(self.launch(at), spin) else math.inf
         except InvalidInput:  # There is no such solid.
             return math.inf
 
-    def _stands_from(self, at: Array, spin: float) -> bool:
-        """Return whether runs stand from some spins, rad/s, from the least on."""
-        return all(stands(self.launch(at, spin * ratio)) for ratio in SURELY)
+    def measured(self, problem: Problem) -> float:
+        """Return the time of turning over of a launch, s, or minus that for which the top stands.
 
-    def _measured(self, at: Array) -> float:
-        """Return the time of turning over, s, or minus the time for which the top stands."""
-        if not self._stands_from(at, self.spin):
+        The launch has the spin of all; the result is inf if the top does not stand from it.
+        """
+        if not stands_from(problem, self.spin):
             return math.inf
-        launch = self.launch(at, self.spin)
+        launch = problem.replace({"launch.spin": self.spin})
         if self.goal == "fastest":
             run = simulate(launch, LONGEST_RISE, until=is_upside_down, samples=2)
             return float(run["turnover_time"])
         return -standing_duration(launch)
+
+
+def stands_from(problem: Problem, spin: float) -> bool:
+    """Return whether runs of a launch stand from some spins, rad/s, from the least on."""
+    return all(stands(problem.replace({"launch.spin": spin * ratio})) for ratio in SURELY)
 
 
 def standing_duration(problem: Problem) -> float:
