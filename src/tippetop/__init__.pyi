@@ -41,6 +41,7 @@ from .problem.frictions import ContensouFriction as ContensouFriction
 from .problem.frictions import CoulombFriction as CoulombFriction
 from .problem.frictions import Friction as Friction
 from .problem.frictions import RegularizedCoulombFriction as RegularizedCoulombFriction
+from .problem.frictions import StaticCoulombFriction as StaticCoulombFriction
 from .problem.frictions import ViscousFriction as ViscousFriction
 from .problem.hertz_patch import MATERIALS as MATERIALS
 from .problem.hertz_patch import Material as Material

@@ -110,6 +110,19 @@ def test_a_disk_that_slides_and_spins_on_its_face_is_the_same(
     assert not compared(found, run)
 
 
+def test_a_disk_that_sticks_by_static_friction_and_slips_is_the_same() -> None:
+    disk = tt.Problem(
+        body=tt.Body(mass=0.05, shape=tt.Ring(radius=0.02), I1=5e-6, I3=1e-5),
+        friction=tt.StaticCoulombFriction(mu=0.2, static_mu=0.3),
+        launch=tt.Launch(tilt=1.7, spin=0.0, precession=2.0),
+    )
+    fields = disk.model_dump(mode="json")
+    (found,) = in_javascript([asked(0, 0.12) | {"problem": fields}])
+    run = in_python(fields, 0.12)
+    assert run["event_kind"].values.tolist()[:2] == ["stick", "slip"]
+    assert not compared(found, run)
+
+
 @pytest.mark.parametrize("spin", [0.0, 20.0])
 def test_a_body_that_tips_over_its_rim_is_the_same(spin: float) -> None:
     tall = tt.Body(mass=0.1, shape=tt.Ring(radius=0.02, center=-0.05), I1=1e-4, I3=2e-5)

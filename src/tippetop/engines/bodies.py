@@ -83,6 +83,11 @@ def friction_numbers(problem: tt.Problem) -> FrictionNumbers:
     match friction:
         case tt.CoulombFriction(mu=mu):
             sliding = mu
+        case tt.StaticCoulombFriction(mu=mu, static_mu=holding):
+            sliding = mu
+            lost.append(
+                f"The static coefficient {holding:g} is not mapped: sliding friction holds."
+            )
         case tt.ContensouFriction(mu=mu, patch_radius=radius, pressure=pressure):
             sliding, torsional = mu, mu * ELLIPSOIDAL_RADIUS * radius
             if pressure == "hertz":

@@ -137,7 +137,8 @@ def can_hold(force: Vector, top: Top) -> bool:
     """Return whether dry friction can exert a force on a face that does not drill, of floats."""
     x, y, normal = force
     friction: Any = top.friction
-    return bool(x * x + y * y <= (friction.mu * normal) ** 2)
+    holding = getattr(friction, "static_mu", friction.mu)
+    return bool(x * x + y * y <= (holding * normal) ** 2)
 
 
 def face_field(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> OuterForces:

@@ -1,15 +1,16 @@
 """Friction laws of the table as users state them, validated."""
 
 from abc import abstractmethod
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tippetop.mechanics.laws.contensou import EllipsoidalLaw
 from tippetop.mechanics.laws.contensou_hertz import HertzLaw
-from tippetop.mechanics.laws.coulomb import CoulombLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw, StaticCoulombLaw
 from tippetop.mechanics.laws.friction import FrictionLaw, RegularizedCoulombLaw, ViscousLaw
 from tippetop.mechanics.vectors import Scalar
+from tippetop.support.errors import InvalidInput
 from tippetop.support.validation import NO_WORD, NotNegative, Positive, Quantity, Variant
 
 LEAST_PATCH = 1e-9
@@ -139,6 +140,47 @@ class CoulombFriction(Friction):
     def law(self) -> FrictionLaw:
         """Law in the form that the mechanics uses."""
         return CoulombLaw(self.mu)
+
+
+class StaticCoulombFriction(Friction):
+    """Dry friction that holds more than it resists sliding: ``-mu N v / |v|``, and at v = 0 any
+    force up to ``static_mu N``.
+
+    A contact that sticks goes on sticking until more than static_mu N is needed; friction then
+    falls to mu N at once. One that slides sticks again where its slip ends and static_mu N holds
+    it. Under the same force one body may stick, and another, launched with some slip, slide on.
+
+    Attributes
+    ----------
+    mu
+        Coefficient of sliding friction.
+    static_mu
+        Coefficient of static friction, not less than `mu`.
+
+    Examples
+    --------
+    >>> import tippetop as tt
+    >>> law = tt.StaticCoulombFriction(mu=0.1, static_mu=0.3).law
+    >>> law.traction((0.5, 0.0), (0.0, 0.0, 0.0)).force  # slipping at 0.5 m/s
+    (-0.1, -0.0)
+    >>> [law.reserve(1.0, (needed, 0.0), 0.0) > 0.0 for needed in (0.2, 0.4)]  # sticking
+    [True, False]
+    """
+
+    kind: Literal["static_coulomb"] = "static_coulomb"
+    mu: Annotated[Positive, Quantity("1", "coefficient of sliding friction")]
+    static_mu: Annotated[Positive, Quantity("1", "coefficient of static friction")]
+
+    @model_validator(mode="after")
+    def _holds_more(self) -> Self:
+        if self.static_mu < self.mu:
+            raise InvalidInput("static_mu", self.static_mu, f"at least mu, {self.mu:.4g}")
+        return self
+
+    @property
+    def law(self) -> FrictionLaw:
+        """Law in the form that the mechanics uses."""
+        return StaticCoulombLaw(self.mu, self.static_mu)
 
 
 class ContensouFriction(Friction):

@@ -25,6 +25,9 @@ from tippetop.theory.slow_time import time_to_end
 from tippetop.theory.steady import SteadyKind, SteadyState, is_neutral
 from tippetop.theory.thresholds import CriticalSpins, stability_limits
 
+POINT_LAWS = ("coulomb", "static_coulomb")
+"""Kinds of dry friction at a point, which alone lets slip begin at rest."""
+
 LEAST_SLIP = 1e-9
 """Slip at launch, m/s, below which it is rounding and not mentioned."""
 
@@ -111,7 +114,7 @@ def _launch(facts: Facts) -> list[Clause]:
         clauses.append(Clause("slips_at_launch", {"speed": speed}, "launch"))
     elif not struck and not is_flat:
         # Dry friction strong enough to hold the top would have made it stick at launch.
-        name = "starts_to_slip" if problem.friction.kind == "coulomb" else "starts_without_slip"
+        name = "starts_to_slip" if problem.friction.kind in POINT_LAWS else "starts_without_slip"
         clauses.append(Clause(name, {}, "launch"))
     return clauses
 

@@ -37,6 +37,36 @@ class CoulombLaw(NamedTuple):
         return (self.mu,)
 
 
+class StaticCoulombLaw(NamedTuple):
+    """Coulomb's friction with a static coefficient: f = -mu v / |v| in sliding, and at v = 0 any
+    force up to static_mu N. No torque.
+
+    Slip begins at a finite rate, because friction falls to mu N as it does. Under a force between
+    mu N and static_mu N both sticking and sliding on are consistent, and what sticks goes on
+    sticking.
+    """
+
+    mu: Scalar
+    static_mu: Scalar
+
+    @property
+    def torque_free(self) -> bool:
+        """It has no torque."""
+        return True
+
+    def traction(self, slip: Horizontal, angular_velocity: Vector) -> Traction:
+        """Force and torque per unit normal force; the slip must not be zero."""
+        return CoulombLaw(self.mu).traction(slip, angular_velocity)
+
+    def reserve(self, normal: Scalar, force: Horizontal, drilling: Scalar) -> Scalar:
+        """(static_mu N)^2 - T^2, N^2."""
+        return CoulombLaw(self.static_mu).reserve(normal, force, drilling)
+
+    def coefficients(self, units: Units) -> tuple[Scalar, ...]:
+        """Friction coefficients mu and static_mu."""
+        return (self.mu, self.static_mu)
+
+
 class RollingResistance(NamedTuple):
     """A torque -length w_t / |w_t| against rolling, w_t the horizontal angular velocity."""
 

@@ -23,7 +23,7 @@ from typing import Any, NamedTuple, Protocol
 
 from tippetop.mechanics.laws.contensou import PI, EllipsoidalLaw
 from tippetop.mechanics.laws.contensou_hertz import HertzLaw
-from tippetop.mechanics.laws.coulomb import TINY, CoulombLaw
+from tippetop.mechanics.laws.coulomb import TINY, CoulombLaw, StaticCoulombLaw
 from tippetop.mechanics.laws.friction import FrictionLaw, ViscousLaw
 from tippetop.mechanics.vectors import Horizontal, Scalar
 
@@ -343,7 +343,7 @@ def face_law_type(law: FrictionLaw, inner: Scalar, pressure: str) -> Any:
     """
     if isinstance(law, ViscousLaw):
         return ViscousFaceLaw
-    if isinstance(law, (CoulombLaw, EllipsoidalLaw, HertzLaw)):
+    if isinstance(law, (CoulombLaw, StaticCoulombLaw, EllipsoidalLaw, HertzLaw)):
         if pressure == "rim":
             return RimLaw
         if pressure == "ellipsoidal":
