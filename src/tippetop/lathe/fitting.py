@@ -71,6 +71,11 @@ half.
 COARSEST_ROUNDING = 1e-3
 """Largest rounding of points on smooth curves, in sizes of the profile."""
 
+SOME = 16
+"""Number of points of a long line that are tried before all of them: with half of them a smooth
+curve is taken for an arc more often, which all points then show.
+"""
+
 FLAT = 1e-9
 """Sagitta below which an edge is straight, in sizes of the profile."""
 
@@ -163,15 +168,14 @@ def _point(edge: Edge, flat: float) -> tuple[float, ...]:
 def _fit_run(points: Array, within: float, rounding: float) -> tuple[list[Edge], float]:
     """Return the edges fitted to a run of straight edges, and the largest distance of a point."""
     polyline = Polyline(points, within, rounding)
-    sections = polyline.sections()
-    parts = polyline.edges(sections)
+    parts = polyline.parts(polyline.sections())
     deviation = 0.0
-    for section, edges in zip(sections, parts, strict=True):
-        # Points are compared with the edges of their own section: another may be nearer by chance.
-        for point in points[section.begin + 1 : section.end]:
-            apart = min(edge.distance(complex(point)) for edge in edges)
+    for part in parts:
+        # Points are compared with the edges of their own part: another may be nearer by chance.
+        for point in points[part.begin + 1 : part.end]:
+            apart = min(edge.distance(complex(point)) for edge in part.edges)
             deviation = max(deviation, apart)
-    return [edge for part in parts for edge in part], deviation
+    return [edge for part in parts for edge in part.edges], deviation
 
 
 class Section(NamedTuple):
@@ -184,6 +188,16 @@ class Section(NamedTuple):
     """Indices of its first and last points."""
     circle: Circle = (0j, 0.0)
     """Centre and radius of an arc."""
+
+
+class FittedPart(NamedTuple):
+    """Part of a polyline with the edges that replace it."""
+
+    begin: int
+    end: int
+    """Indices of its first and last points."""
+    edges: list[Edge]
+    """The edges: an arc or two tangent ones along a curve, of other sections all."""
 
 
 class Polyline:
@@ -201,6 +215,10 @@ class Polyline:
         is_even = (ratios <= UNEVEN) & (ratios >= 1.0 / UNEVEN)
         self.is_soft = np.full(len(points), False)
         self.is_soft[1:-1] = (np.abs(turns) <= SMOOTH) & is_even
+        # By how much the line has turned before each point, whichever way.
+        self.turned = [0.0, 0.0]
+        for turn in np.abs(turns).tolist():
+            self.turned.append(self.turned[-1] + turn)
         self.curvature = np.zeros(len(points))
         self.curvature[1:-1] = np.abs(turns) / np.minimum(lengths[1:], lengths[:-1])
         # The directions of short edges scatter with the errors of their ends.
@@ -275,13 +293,10 @@ class Polyline:
         if points[0].real or 2.0 * abs(_slope(points[1] - points[0])) > SHARP_TURN:
             return None
 
-        def circle(end: int, within: float) -> Circle | None:
-            candidate = circle_on_axis(points[: end + 1])
-            return (
-                candidate
-                if candidate and self._are_on(points[: end + 1], candidate, within)
-                else None
-            )
+        def circle(end: int, within: float, some: bool) -> Circle | None:
+            along = _some(points[: end + 1], some)
+            candidate = circle_on_axis(along)
+            return candidate if candidate and self._are_on(along, candidate, within) else None
 
         limit = _first(is_sharp, 1, len(points) - 1)
         is_soft = self.is_soft if points is self.points else self.is_soft[::-1]
@@ -290,8 +305,8 @@ class Polyline:
     def _arc_from(self, begin: int, end: int) -> Section | None:
         """Return the longest arc from a point, or None."""
 
-        def circle(last: int, within: float) -> Circle | None:
-            points = self.points[begin : last + 1]
+        def circle(last: int, within: float, some: bool) -> Circle | None:
+            points = _some(self.points[begin : last + 1], some)
             candidate = circle_through(points)
             if candidate is None or not self._are_on(points, candidate, within):
                 return None
@@ -305,11 +320,45 @@ class Polyline:
 
         limit = min(_first(self.is_sharp, begin + 1, self.count), end)
         fewest = begin + FEWEST_ON_ARC
+        if self.is_soft[begin] and not self._may_begin_arc(circle, begin, fewest, limit):
+            return None
         return self._longest_arc(circle, begin, fewest, limit, self.points, self.is_soft, 1.0)
+
+    def _may_begin_arc(
+        self,
+        circle: Callable[[int, float, bool], Circle | None],
+        begin: int,
+        fewest: int,
+        limit: int,
+    ) -> bool:
+        """Return whether an arc may begin at a point in a smooth line.
+
+        Such an arc turns at least by `NARROW` or, if its points are not `CLOSE`, by `WIDE`. Its
+        first points are then on a circle too, which fits them about as well.
+        """
+        for angle, within in ((NARROW, self.close), (WIDE, self.within)):
+            end = max(self._turned_by(begin, angle), fewest)
+            if end <= limit and circle(end, 2.0 * within, True) is not None:
+                return True
+        return False
+
+    def _turned_by(self, begin: int, angle: float) -> int:
+        """Return the last point before the line turns by an angle, rad, from a point on.
+
+        If it does not turn by as much, the result is beyond the line.
+        """
+        low, high = begin, self.count + 1
+        while high - low > 1:
+            middle = (low + high) // 2
+            if self.turned[middle] - self.turned[begin] < angle:
+                low = middle
+            else:
+                high = middle
+        return low if high <= self.count else high
 
     def _longest_arc(
         self,
-        circle: Callable[[int, float], Circle | None],
+        circle: Callable[[int, float, bool], Circle | None],
         begin: int,
         fewest: int,
         limit: int,
@@ -323,14 +372,14 @@ class Polyline:
         """
         if limit < fewest:
             return None
-        last = _last_true(lambda end: circle(end, self.within) is not None, fewest, limit)
-        end = _last_true(lambda end: circle(end, self.close) is not None, fewest, last)
-        best = circle(end, self.close)
+        last = _last_on(partial(_has_circle, circle, self.within), fewest, limit)
+        end = _last_on(partial(_has_circle, circle, self.close), fewest, last)
+        best = circle(end, self.close, False)
         if best is not None and end - begin >= ABRUPT * (last - begin):
             turn = abs(_turn(points[begin : end + 1], best[0])) / share
             if turn >= NARROW or not (is_soft[begin] or is_soft[end]):
                 return Section("arc", begin, end, best)
-        best = circle(last, self.within)
+        best = circle(last, self.within, False)
         if best is not None and abs(_turn(points[begin : last + 1], best[0])) / share >= WIDE:
             return Section("near arc", begin, last, best)
         return None
@@ -362,18 +411,19 @@ class Polyline:
     def _straight_to(self, begin: int, end: int, within: float) -> int:
         """Return the last point up to which the polyline is straight to within a distance."""
 
-        def is_straight(last: int) -> bool:
+        def is_straight(last: int, some: bool) -> bool:
             chord = self.points[last] - self.points[begin]
             if not chord:
                 return False
-            arms = (self.points[begin : last + 1] - self.points[begin]) / chord
+            along = _some(self.points[begin : last + 1], some)
+            arms = (along - self.points[begin]) / chord
             is_close = np.abs(arms.imag).max() * abs(chord) <= within
             return bool(is_close and (np.diff(arms.real) > 0.0).all())
 
-        return _last_true(is_straight, begin + 1, end)
+        return _last_on(is_straight, begin + 1, end)
 
-    def edges(self, sections: list[Section]) -> list[list[Edge]]:
-        """Return the edges of each section."""
+    def parts(self, sections: list[Section]) -> list[FittedPart]:
+        """Return the parts of the sections, with their edges."""
         sections = list(sections)
         joints = [complex(self.points[section.begin]) for section in sections]
         joints.append(complex(self.points[-1]))
@@ -398,17 +448,17 @@ class Polyline:
                 after = tangents[k + 1][0] if k + 1 < len(sections) else _across_axis(joints[-1])
                 for place, direction in ((0, before), (-1, after)):
                     tangents[k][place] = _common(complex(tangents[k][place]), complex(direction))
-        parts = []
+        parts = list[FittedPart]()
         for section, points, along in zip(sections, lines, tangents, strict=True):
             start, end = complex(points[0]), complex(points[-1])
+            if section.kind == "curve":
+                parts += self._tangent_arcs(points, along, section.begin)
+                continue
+            edges = [Edge(start, end)]
             if section.kind == "arc":
-                parts.append(
-                    arcs_around(*section.circle, start, end, _turn(points, section.circle[0]))
-                )
-            elif section.kind == "line":
-                parts.append([Edge(start, end)])
-            else:
-                parts.append(self._tangent_arcs(points, along))
+                turn = _turn(points, section.circle[0])
+                edges = arcs_around(*section.circle, start, end, turn)
+            parts.append(FittedPart(section.begin, section.end, edges))
         return parts
 
     def _make_faces_tangent(self, sections: list[Section], joints: list[complex]) -> set[int]:
@@ -441,9 +491,12 @@ class Polyline:
                     on_faces.add(place)
         return on_faces
 
-    def _tangent_arcs(self, points: Array, tangents: Array) -> list[Edge]:
-        """Return the fewest arcs along a curve within the tolerance, each tangent to the next."""
-        curve_edges: list[Edge] = []
+    def _tangent_arcs(self, points: Array, tangents: Array, first_point: int) -> list[FittedPart]:
+        """Return the fewest arcs along a curve within the tolerance, each tangent to the next.
+
+        The first of the points is the `first_point` of the polyline.
+        """
+        parts = list[FittedPart]()
         begin, last = 0, len(points) - 1
 
         def arcs(start: int, end: int) -> list[Edge] | None:
@@ -453,18 +506,50 @@ class Polyline:
 
         def are_close(start: int, end: int) -> bool:
             edges = arcs(start, end)
+            # Most that are not close are not so in the middle.
+            tried = [points[(start + end) // 2], *points[start + 1 : end]]
             return edges is not None and all(
                 min(edge.distance(complex(point)) for edge in edges) <= self.within
-                for point in points[start + 1 : end]
+                for point in tried
             )
 
         while begin < last:
             end = _last_true(partial(are_close, begin), begin + 1, last)
             straight = [Edge(complex(points[begin]), complex(points[end]))]
             edges = arcs(begin, end) or straight
-            curve_edges += [_beside_axis(edge) for edge in edges]
+            beside = [_beside_axis(edge) for edge in edges]
+            parts.append(FittedPart(first_point + begin, first_point + end, beside))
             begin = end
-        return curve_edges
+        return parts
+
+
+def _some(points: Array, some: bool) -> Array:
+    """Return the points; if only `some` are asked for, about `SOME` of them and the last."""
+    step = (len(points) - 1) // SOME
+    if not some or step < 2:
+        return points
+    return np.concatenate([points[:-1:step], points[-1:]])
+
+
+def _has_circle(
+    circle: Callable[[int, float, bool], Circle | None], within: float, last: int, some: bool
+) -> bool:
+    """Return whether the points up to the `last`, or `some` of them, are within a distance of a
+    circle.
+    """
+    return circle(last, within, some) is not None
+
+
+def _last_on(holds: Callable[[int, bool], bool], low: int, high: int) -> int:
+    """Return a last point between `low` and `high` up to which points are on one line or circle.
+
+    It is searched for with some of the points, so that the time is proportional to the number of
+    points where most are on none, and among all where all are not on the one that is found.
+    """
+    last = _last_true(lambda end: holds(end, True), low, high)
+    if last == low or holds(last, False):
+        return last
+    return _last_true(lambda end: holds(end, False), low, last)
 
 
 def _beside_axis(edge: Edge) -> Edge:

@@ -261,19 +261,21 @@ def _refuse_meetings(edges: list[Edge], within: float, field: str) -> None:
     reach = np.array([edge.sagitta + within for edge in edges])
     starts = np.array([edge.start for edge in edges])
     ends = np.array([edge.end for edge in edges])
-    leftmost = np.minimum(starts.real, ends.real) - reach
-    rightmost = np.maximum(starts.real, ends.real) + reach
-    low = np.minimum(starts.imag, ends.imag) - reach
-    high = np.maximum(starts.imag, ends.imag) + reach
-    for first in range(len(edges) - 1):
-        near = (
-            (leftmost[first + 1 :] <= rightmost[first])
-            & (rightmost[first + 1 :] >= leftmost[first])
-            & (low[first + 1 :] <= high[first])
-            & (high[first + 1 :] >= low[first])
-        )
-        for place in np.flatnonzero(near).tolist():
-            _refuse_meeting(edges, first, first + 1 + place, within, field)
+    leftmost = (np.minimum(starts.real, ends.real) - reach).tolist()
+    rightmost = (np.maximum(starts.real, ends.real) + reach).tolist()
+    low = (np.minimum(starts.imag, ends.imag) - reach).tolist()
+    high = (np.maximum(starts.imag, ends.imag) + reach).tolist()
+    near = []
+    upwards = sorted(range(len(edges)), key=lambda place: low[place])
+    for rank, place in enumerate(upwards):
+        above = rank + 1
+        while above < len(upwards) and low[upwards[above]] <= high[place]:
+            second = upwards[above]
+            if leftmost[second] <= rightmost[place] and rightmost[second] >= leftmost[place]:
+                near.append((min(place, second), max(place, second)))
+            above += 1
+    for first, second in sorted(near):
+        _refuse_meeting(edges, first, second, within, field)
 
 
 def _refuse_meeting(edges: list[Edge], first: int, second: int, within: float, field: str) -> None:

@@ -1,10 +1,13 @@
 """Support functions of smooth parts of hulls: polynomials of the cosine of the tilt."""
 
-# translate module: by hand in ovals.js
+# translate module: numpy
+
+import math
 
 import numpy as np
 
 from tippetop.lathe.hull import ConvexHull
+from tippetop.lathe.linear_programme import Array, lowest_point
 
 STEPS = 360
 """Number of steps between tilts 0 and pi at which support functions are compared."""
@@ -20,47 +23,70 @@ def polynomial_support(
     m.
 
     The polynomial is the support function of a convex surface about the height `center`. At other
-    tilts it is below that of the hull, unless the surface `may_protrude` from the body.
+    tilts it is below that of the hull, unless the surface `may_protrude` from the body. The list
+    is empty, and the error infinite, if there is no such surface.
     """
-    from scipy.optimize import linprog  # noqa: PLC0415 - slow to import
-
     tilts = np.pi * np.arange(STEPS + 1) / STEPS
-    c, s = np.cos(tilts), np.sin(tilts)
-    support = np.array([hull.support(tilt) for tilt in tilts.tolist()]) + center * c
+    support = np.array([hull.support(tilt) for tilt in tilts.tolist()]) + center * np.cos(tilts)
     size = float(support.max())
-    chebyshev = np.polynomial.chebyshev
-    basis = chebyshev.chebvander(c, degree)
-    slopes, curvatures = (
-        np.stack(
-            [chebyshev.chebval(c, chebyshev.chebder(unit, order)) for unit in np.eye(degree + 1)],
-            axis=1,
-        )
-        for order in (1, 2)
-    )
-    # Radii of curvature around the axis and along the meridian.
-    across = basis - c[:, None] * slopes
-    along = across + (s**2)[:, None] * curvatures
+    support = support / size
     is_between = (tilts >= low - 1e-9) & (tilts <= high + 1e-9)
-    is_bounded = is_between if may_protrude else np.ones(len(tilts), dtype=bool)
-    ones = np.ones((len(tilts), 1))
-    rows = [
-        np.hstack([basis[is_bounded], -ones[is_bounded]]),
-        np.hstack([-basis[is_between], -ones[is_between]]),
-        np.hstack([-across, 0.0 * ones]),
-        np.hstack([-along, 0.0 * ones]),
+    between = np.flatnonzero(is_between)
+    bounded = between if may_protrude else np.arange(STEPS + 1)
+    columns = [
+        np.concatenate([harmonic[bounded], -harmonic[between], -across, -along, np.zeros(1)])
+        for harmonic, across, along in _harmonics(tilts, degree)
     ]
-    bounds = [
-        support[is_bounded] / size,
-        -support[is_between] / size,
-        np.full(len(tilts), -SHARPEST),
-        np.full(len(tilts), -SHARPEST),
-    ]
-    cost = np.append(np.zeros(degree + 1), 1.0)
-    free = [(None, None)] * (degree + 1) + [(0.0, None)]
-    solution = linprog(cost, np.vstack(rows), np.concatenate(bounds), bounds=free).x
+    errors = np.concatenate(
+        [
+            np.full(len(bounded) + len(between), -1.0),
+            np.zeros(2 * len(tilts)),
+            np.full(1, -1.0),
+        ]
+    )
+    bounds = np.concatenate(
+        [
+            support[bounded],
+            -support[between],
+            np.full(2 * len(tilts), -SHARPEST),
+            np.zeros(1),
+        ]
+    )
+    spread = [k * (len(bounded) - 1) // degree for k in range(degree + 1)]
+    solution = lowest_point([*columns, errors], bounds, [len(bounds) - 1, *spread])
     if solution is None:
-        return [], np.inf
-    coefficients = np.zeros(degree + 1)
-    powers = chebyshev.cheb2poly(solution[:-1])
-    coefficients[: len(powers)] = size * powers
-    return coefficients.tolist(), size * float(solution[-1])
+        return [], math.inf
+    powers = _in_powers(solution[:-1])
+    return [size * power for power in powers], size * solution[-1]
+
+
+def _harmonics(tilts: Array, degree: int) -> list[tuple[Array, Array, Array]]:
+    """Return Chebyshev's polynomials cos(k theta) of the cosine of tilts, up to a degree.
+
+    With each come the radii of curvature around the axis, h - c h', and along the meridian,
+    h + d^2h/dtheta^2, of the surface of which it is the support function h.
+    """
+    c = np.cos(tilts)
+    # sin(k theta) / sin(theta), which has limits at the poles.
+    before, ratio = np.zeros(len(tilts)), np.ones(len(tilts))
+    rows = [(np.ones(len(tilts)), np.ones(len(tilts)), np.ones(len(tilts)))]
+    for k in range(1, degree + 1):
+        harmonic = np.cos(k * tilts)
+        rows.append((harmonic, harmonic - k * c * ratio, (1 - k * k) * harmonic))
+        before, ratio = ratio, 2.0 * c * ratio - before
+    return rows
+
+
+def _in_powers(shares: list[float]) -> list[float]:
+    """Return a sum of Chebyshev's polynomials as coefficients of powers, from that of 1 on."""
+    count = len(shares)
+    total = [0.0] * count
+    before, polynomial = [0.0] * count, [1.0] + [0.0] * (count - 1)
+    for k, share in enumerate(shares):
+        total = [one + share * term for one, term in zip(total, polynomial, strict=True)]
+        # T_1 = c T_0, and then T_(k+1) = 2 c T_k - T_(k-1).
+        factor = 2.0 if k else 1.0
+        shifted = [0.0, *polynomial[:-1]]
+        following = [factor * one - two for one, two in zip(shifted, before, strict=True)]
+        before, polynomial = polynomial, following
+    return total

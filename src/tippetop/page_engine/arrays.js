@@ -89,7 +89,17 @@ export class NdArray {
     return this.map((one) => (one instanceof Complex ? one.imag : 0));
   }
   map(function_) {
-    return new NdArray(Array.from(this, function_));
+    const found = new Array(this.length);
+    for (let k = 0; k < this.length; k++)
+      found[k] = function_(this.values[this.offset + this.stride * k]);
+    return new NdArray(found);
+  }
+  /** What comes of joining its values one after another to a first one. */
+  reduced(join, first, from = 0) {
+    let found = first;
+    for (let k = from; k < this.length; k++)
+      found = join(found, this.values[this.offset + this.stride * k]);
+    return found;
   }
   copy() {
     return new NdArray([...this]);
@@ -133,7 +143,7 @@ export class NdArray {
     return [...this].some(py.truth);
   }
   sum() {
-    return [...this].reduce(py.add, 0);
+    return this.reduced(OPERATIONS.add, 0);
   }
   mean() {
     return py.div(this.sum(), this.length);
@@ -146,13 +156,13 @@ export class NdArray {
   }
   best(better) {
     if (!this.length) throw new py.ValueError("an empty array has no largest or smallest value");
-    return [...this].reduce((one, other) => better(one, other));
+    return this.reduced(better, this.at(0), 1);
   }
   __neg__() {
-    return this.map(py.neg);
+    return this.map((one) => (typeof one === "number" ? -one : py.neg(one)));
   }
   __abs__() {
-    return this.map(py.abs);
+    return this.map((one) => (one instanceof Complex ? one.__abs__() : Math.abs(one)));
   }
   __invert__() {
     return this.map((one) => !one);
@@ -164,25 +174,35 @@ export class NdArray {
 
 /** What a function of values makes of two arrays, of one and a value, or of two values. */
 const each = (function_) => (a, b) => {
-  if (!(a instanceof NdArray || b instanceof NdArray)) return function_(a, b);
-  const length = a instanceof NdArray ? a.length : b.length;
-  if (a instanceof NdArray && b instanceof NdArray && b.length !== length)
+  const [isRow, isOtherRow] = [a instanceof NdArray, b instanceof NdArray];
+  if (!(isRow || isOtherRow)) return function_(a, b);
+  const length = isRow ? a.length : b.length;
+  if (isRow && isOtherRow && b.length !== length)
     throw new py.ValueError("arrays of different lengths");
-  const of = (row, place) => (row instanceof NdArray ? row.at(place) : row);
-  return new NdArray(Array.from({ length }, (_, k) => function_(of(a, k), of(b, k))));
+  const found = new Array(length);
+  for (let k = 0; k < length; k++)
+    found[k] = function_(
+      isRow ? a.values[a.offset + a.stride * k] : a,
+      isOtherRow ? b.values[b.offset + b.stride * k] : b,
+    );
+  return new NdArray(found);
 };
 const eachOne = (function_) => (a) => (a instanceof NdArray ? a.map(function_) : function_(a));
 
-/** A division as NumPy's, where that by zero is no error. */
-function divided(a, b) {
-  return typeof a === "number" && typeof b === "number" ? a / b : py.div(a, b);
-}
+/** An operation of numbers as of JavaScript's, of others as of complex numbers; a division by zero is no error. */
+const ofNumbers = (name, plain) => (a, b) => {
+  if (typeof a === "number" && typeof b === "number") return plain(a, b);
+  const [one, other] = [complexOf(a), complexOf(b)];
+  if (!one || !other) throw new TypeError("arrays are of numbers");
+  if (one !== a && other !== b) return plain(one.real, other.real);
+  return COMPLEX[name](one, other);
+};
 
 const OPERATIONS = {
-  add: (a, b) => py.add(a, b),
-  sub: (a, b) => py.sub(a, b),
-  mul: (a, b) => py.mul(a, b),
-  truediv: divided,
+  add: ofNumbers("add", (a, b) => a + b),
+  sub: ofNumbers("sub", (a, b) => a - b),
+  mul: ofNumbers("mul", (a, b) => a * b),
+  truediv: ofNumbers("truediv", (a, b) => a / b),
   pow: (a, b) => a ** b,
   and: (a, b) => a && b,
   or: (a, b) => a || b,
@@ -206,7 +226,7 @@ export const gt = each((a, b) => a > b);
 export const ge = each((a, b) => a >= b);
 export const invert = (a) => a.__invert__();
 /** The scalar product of two arrays. */
-export const matmul = (a, b) => each(py.mul)(a, b).sum();
+export const matmul = (a, b) => each(OPERATIONS.mul)(a, b).sum();
 
 export function complex(a, b = 0) {
   if (typeof b !== "number") throw new TypeError("the imaginary part is a number");

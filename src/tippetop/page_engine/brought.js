@@ -76,9 +76,17 @@ function strokeOf({ points, center, one, other, begin, end }) {
   return places.length === 2 ? m.line(...places) : m.bezier(places);
 }
 
+// The workpieces of tables: to fit a profile takes most of the time.
+const pieces = new WeakMap();
+
+function pieceOf(table) {
+  if (!pieces.has(table)) pieces.set(table, new m.Workpiece(table));
+  return pieces.get(table);
+}
+
 /** What a workpiece weighs, and to how few edges its points were fitted, whether it can be simulated or not. */
 export function weighed(table) {
-  const piece = new m.Workpiece(table);
+  const piece = pieceOf(table);
   const { mass, center, I1, I3 } = piece.mass_properties;
   const { stated, edges } = piece.fit;
   return {
@@ -95,7 +103,7 @@ export function weighed(table) {
 
 /** Return the body that a workpiece makes; with `whole`, incomplete surfaces are accepted. */
 export function turned(table, whole = false) {
-  const [mass, shapes, I1, I3, profile] = m.turned_fields(new m.Workpiece(table), whole);
+  const [mass, shapes, I1, I3, profile] = m.turned_fields(pieceOf(table), whole);
   const shape = shapes.length === 1 ? shapes[0] : shapes;
   return new m.Body({ mass, shape, I1, I3, profile }).model_dump();
 }

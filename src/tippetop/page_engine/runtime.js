@@ -25,12 +25,9 @@ const callMethod = (a, name, b) => (hasattr(a, name) ? a[name](b) : NotImplement
 
 /** Whether Python asks the second operand first: its class derives from the first one's. */
 function isMoreSpecial(a, name, b, reflected) {
-  return (
-    hasattr(b, reflected) &&
-    hasattr(a, name) &&
-    b instanceof a.constructor &&
-    b.constructor !== a.constructor
-  );
+  if (typeof a !== "object" || typeof b !== "object" || a === null || b === null) return false;
+  if (b.constructor === a.constructor || !(b instanceof a.constructor)) return false;
+  return reflected in b && name in a;
 }
 
 /** An operation on operands that are not both numbers: by a method of either, or of truth values as numbers. */

@@ -76,16 +76,17 @@ def touching_surfaces(workpiece: Workpiece, completed: bool = False) -> list[Sha
         across, along, height = spheroid
         return [Spheroid(across=across, along=along, center=_above(height, workpiece))]
     curves = hull.smooth_parts(reach)
-    smooth = [part for part in curves if _is_oval(workpiece, *part, completed)]
-    ovals = [_oval(workpiece, *part, completed) for part in smooth]
+    fits = [_fitted_oval(workpiece, *part, completed) for part in curves]
+    smooth = [fit for fit in fits if completed or fit.is_close]
+    ovals = [_oval(fit) for fit in smooth]
 
     def is_separate(zone: Zone) -> bool:
-        return not any(low <= zone.low and zone.high <= high for low, high in smooth)
+        return not any(fit.low <= zone.low and zone.high <= fit.high for fit in smooth)
 
     zones = [zone for zone in hull.zones if is_separate(zone)]
     if len(zones) > MOST_SURFACES:
-        for part in curves:
-            _oval(workpiece, *part, completed)
+        for fit in fits:
+            _oval(fit)
         raise InvalidInput(
             "profile",
             Described(f"a body that stands on {len(zones)} surfaces"),
@@ -168,21 +169,30 @@ def allowance(workpiece: Workpiece) -> float:
     return PROTRUSION * workpiece.outline.size + 2.0 * workpiece.deviation
 
 
-def _is_oval(workpiece: Workpiece, low: float, high: float, completed: bool) -> bool:
-    """Return whether the smooth surface between two tilts is an oval that stays in the body."""
-    center = workpiece.mass_properties.center
-    _, deviation = polynomial_support(workpiece.hull, low, high, center, DEGREE, completed)
-    return completed or deviation <= OVAL_DEVIATION * workpiece.outline.size
+class FittedOval(NamedTuple):
+    """Oval that replaces the smooth surface which touches the table between two tilts."""
+
+    low: float
+    high: float
+    support: list[float]
+    """Coefficients of its support function; none if there is no such oval."""
+    is_close: bool
+    """Whether it is as close to the curve as `OVAL_DEVIATION` asks for."""
 
 
-def _oval(workpiece: Workpiece, low: float, high: float, completed: bool) -> Shape:
-    """Return the smooth surface that touches the table between two tilts, as an oval."""
+def _fitted_oval(workpiece: Workpiece, low: float, high: float, completed: bool) -> FittedOval:
+    """Return the oval closest to the surface between two tilts, in the body unless `completed`."""
     center = workpiece.mass_properties.center
     support, deviation = polynomial_support(workpiece.hull, low, high, center, DEGREE, completed)
-    if deviation > OVAL_DEVIATION * workpiece.outline.size:
-        part = Described(f"a curve of which only tilts {low:.4g} to {high:.4g} exist")
+    return FittedOval(low, high, support, deviation <= OVAL_DEVIATION * workpiece.outline.size)
+
+
+def _oval(fit: FittedOval) -> Shape:
+    """Return a fitted oval; raise `InvalidInput` if it is not close to its curve."""
+    if not fit.is_close:
+        part = Described(f"a curve of which only tilts {fit.low:.4g} to {fit.high:.4g} exist")
         raise InvalidInput("profile", part, "", PROTRUDES, ACCEPT_COMPLETED)
-    return Oval(support=tuple(support))
+    return Oval(support=tuple(fit.support))
 
 
 def _shape(zone: Zone, workpiece: Workpiece) -> Shape:
