@@ -350,6 +350,22 @@ def test_a_keyframe_is_chosen_by_its_name(tmp_path):
         tt.read_mjcf(path)
 
 
+def test_a_command_launches_from_the_keyframe_that_is_named(tmp_path):
+    path = tmp_path / "top.xml"
+    keys = '<key name="slow" qvel="0 0 0 0 0 1"/><key name="fast" qvel="0 0 0 0 0 300"/>'
+    path.write_text(model_text(free(BALL), tail=f"<keyframe>{keys}</keyframe>"))
+    run = CliRunner().invoke
+    assert "spin = 1.0" in run(app, ["problem", str(path)]).stdout
+    assert "spin = 300.0" in run(app, ["problem", str(path), "--keyframe", "fast"]).stdout
+    for words, sentence in [
+        ([str(path), "--keyframe", "fats"], "keyframe: 'fats'"),
+        (["--keyframe", "fast"], "--keyframe: 'fast' is only for a file in MJCF"),
+    ]:
+        refused = run(app, ["problem", *words]).exception
+        assert isinstance(refused, tt.InvalidInput)
+        assert sentence in str(refused)
+
+
 @pytest.mark.parametrize("sequence", ["xyz", "XYZ", "zyx", "zxZ"])
 def test_orientations_are_mujocos(sequence):
     mujoco = pytest.importorskip(

@@ -28,6 +28,12 @@ NUMBER = "NUMBER"
 """Placeholder in the help for a number that may have a unit."""
 
 PROBLEM_OPTIONS = {
+    "keyframe": Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME", help="Keyframe of the .xml file to launch from; by default its first."
+        ),
+    ],
     "preset": Annotated[
         str | None,
         typer.Option(
@@ -75,6 +81,8 @@ FIELDS = {
 }
 """Fields of a problem that have an option."""
 
+MJCF_ENDING = ".xml"
+
 Json = Annotated[bool, typer.Option("--json", help="Print JSON for programs.")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite results that exist.")]
 
@@ -90,16 +98,22 @@ class Choice(NamedTuple):
     preset: str | None = None
     settings: Mapping[str, Any] = {}
     changes: Sequence[str] = ()
+    keyframe: str | None = None
 
     def problem(self) -> "tt.Problem":
         """Return the problem of the file, or the report's, with the changes.
 
         Raises `InvalidInput` if there is no such problem.
         """
-        return self.changed(_problem_in(self.file, self._stated()))
+        return self.changed(_problem_in(self.file, self._stated(), self.keyframe))
 
     def changed(self, problem: "tt.Problem") -> "tt.Problem":
         """Return a problem with the changes."""
+        is_mjcf = self.file is not None and self.file.suffix.lower() == MJCF_ENDING
+        if self.keyframe is not None and not is_mjcf:
+            raise InvalidInput(
+                "--keyframe", self.keyframe, "", "is only for a file in MJCF, such as top.xml"
+            )
         if self.preset is not None:
             problem = problem.model_copy(update={"body": tt.presets.body(self.preset)})
         return problem.replace(self._stated())
@@ -119,15 +133,15 @@ class Choice(NamedTuple):
         return changes
 
 
-def _problem_in(file: Path | None, stated: Mapping[str, Any]) -> "tt.Problem":
+def _problem_in(file: Path | None, stated: Mapping[str, Any], keyframe: str | None) -> "tt.Problem":
     """Return the problem of a file in TOML, JSON or MJCF; the report's without one.
 
     Options state what a file in TOML or JSON lacks.
     """
     if file is None:
         return tt.presets.report_problem()
-    if file.suffix.lower() == ".xml":
-        return tt.read_mjcf(file)
+    if file.suffix.lower() == MJCF_ENDING:
+        return tt.read_mjcf(file, keyframe)
     try:
         return tt.Problem.read(file)
     except InvalidInput as error:
@@ -171,7 +185,13 @@ def of_a_problem(
             for name, field in FIELDS.items()
             if stated[name] is not None
         }
-        choice = Choice(stated["file"], stated["preset"], settings, stated["changes"] or ())
+        choice = Choice(
+            stated["file"],
+            stated["preset"],
+            settings,
+            stated["changes"] or (),
+            stated["keyframe"],
+        )
         command(choice, **values)
 
     _, *parameters = signature(command).parameters.values()
