@@ -108,13 +108,85 @@ def hertz(mu, radius):
     return law
 
 
+def advance(rates, y, guards, bound, scale, longest=np.inf):
+    """Step y from 0 until a guard falls through zero or x reaches `bound`; x, y and its name.
+
+    Guards are functions of (x, y); those that are not positive at first are armed once they
+    are.
+    """
+    tiny = 1e-14
+    x, armed = 0.0, {name: g(0.0, y) > 0.0 for name, g in guards.items()}
+    solver = DOP853(
+        rates, x, y, bound, rtol=RTOL, atol=1e-15 * scale, max_step=longest, first_step=None
+    )
+    while solver.status == "running":
+        before, start = solver.t, solver.y.copy()
+        solver.step()
+        assert solver.status != "failed", "DOP853 found no step"
+        dense = None
+        first, hit = None, None
+        for name, g in guards.items():
+            looks = [solver.t] if armed[name] else []
+            if armed[name]:
+                dense = dense or solver.dense_output()
+                inner = np.linspace(before, solver.t, 6)[1:-1]
+                looks = [*inner, solver.t]
+            for look in looks:
+                if g(look, solver.y if look == solver.t else dense(look)) <= 0.0:
+                    at = before
+                    if g(before, start) > 0.0:
+                        at = brentq(on(g, dense), before, look, xtol=1e-16, rtol=1e-15)
+                    if first is None or at < first:
+                        first, hit = at, name
+                    break
+            if not armed[name] and g(solver.t, solver.y) > 0.0:
+                armed[name] = True
+        if hit is not None:
+            at, y = refine(rates, before, start, first, guards[hit], scale, longest)
+            return at, y, hit
+        if bound - solver.t < tiny * bound:
+            break
+    return solver.t, solver.y, None
+
+
+def refine(rates, before, start, at, guard, scale, longest):
+    """Integrate up to the event again until it is hit."""
+
+    def reach(end):
+        if end <= before:
+            return start
+        again = DOP853(rates, before, start, end, rtol=RTOL, atol=1e-15 * scale, max_step=longest)
+        while again.status == "running":
+            again.step()
+        return again.y
+
+    y = reach(at)
+    value = guard(at, y)
+    for _ in range(6):
+        step = 1e-6 * max(at - before, 1e-9)
+        derivatives = rates(at, y)
+        slope = (guard(at + step, y + step * derivatives) - value) / step
+        change = -value / slope if slope else 0.0
+        if not abs(change) < (at - before) + 1e-9:
+            break
+        at += change
+        y = reach(at)
+        value = guard(at, y)
+        if abs(change) < 1e-16 * max(1.0, at):
+            break
+    return at, y
+
+
 class Solver:
     """A body on a table; the state is (axis, angular velocity, velocity, height)."""
 
     def __init__(self, problem):
         body = problem.body
         self.mass, self.I1, self.I3 = body.mass, body.I1, body.I3
-        self.gravity, self.arm = problem.gravity, problem.rolling_resistance
+        slope, azimuth = problem.table.slope, problem.table.azimuth
+        down = (math.sin(slope) * math.cos(azimuth), math.sin(slope) * math.sin(azimuth))
+        self.field = problem.gravity * np.array([*down, -math.cos(slope)])
+        self.gravity, self.arm = -self.field[2], problem.rolling_resistance
         self.restitution = problem.contact.restitution
         self.stops = problem.contact.liftoff == "stop"
         self.supports = [self.support_of(shape) for shape in body.shapes]
@@ -187,7 +259,7 @@ class Solver:
         K, right = np.zeros((size, size)), np.zeros(size)
         K[0, 0] = K[1, 1] = K[2, 2] = self.mass
         K[3:6, 3:6] = inertia
-        right[2] = -self.mass * self.gravity
+        right[:3] = self.mass * self.field
         right[3:6] = -cross(w, momentum)
         resisted = np.zeros(3)
         if self.arm:
@@ -233,77 +305,6 @@ class Solver:
     def column(self, i, n, w, u):
         force, torque = self.law(self.slip(i, n, w, u), w[2])
         return force, torque * UP
-
-    # ---- stepping
-
-    def advance(self, rates, y, guards, bound, scale, longest=np.inf):
-        """Step y from 0 until a guard falls through zero or x reaches `bound`; x, y and its name.
-
-        Guards are functions of (x, y); those that are not positive at first are armed once they
-        are.
-        """
-        tiny = 1e-14
-        x, armed = 0.0, {name: g(0.0, y) > 0.0 for name, g in guards.items()}
-        solver = DOP853(
-            rates, x, y, bound, rtol=RTOL, atol=1e-15 * scale, max_step=longest, first_step=None
-        )
-        while solver.status == "running":
-            before, start = solver.t, solver.y.copy()
-            solver.step()
-            assert solver.status != "failed", "DOP853 found no step"
-            dense = None
-            first, hit = None, None
-            for name, g in guards.items():
-                looks = [solver.t] if armed[name] else []
-                if armed[name]:
-                    dense = dense or solver.dense_output()
-                    inner = np.linspace(before, solver.t, 6)[1:-1]
-                    looks = [*inner, solver.t]
-                for look in looks:
-                    if g(look, solver.y if look == solver.t else dense(look)) <= 0.0:
-                        at = before
-                        if g(before, start) > 0.0:
-                            at = brentq(on(g, dense), before, look, xtol=1e-16, rtol=1e-15)
-                        if first is None or at < first:
-                            first, hit = at, name
-                        break
-                if not armed[name] and g(solver.t, solver.y) > 0.0:
-                    armed[name] = True
-            if hit is not None:
-                at, y = self.refine(rates, before, start, first, guards[hit], scale, longest)
-                return at, y, hit
-            if bound - solver.t < tiny * bound:
-                break
-        return solver.t, solver.y, None
-
-    def refine(self, rates, before, start, at, guard, scale, longest):
-        """Integrate up to the event again until it is hit."""
-
-        def reach(end):
-            if end <= before:
-                return start
-            again = DOP853(
-                rates, before, start, end, rtol=RTOL, atol=1e-15 * scale, max_step=longest
-            )
-            while again.status == "running":
-                again.step()
-            return again.y
-
-        y = reach(at)
-        value = guard(at, y)
-        for _ in range(6):
-            step = 1e-6 * max(at - before, 1e-9)
-            derivatives = rates(at, y)
-            slope = (guard(at + step, y + step * derivatives) - value) / step
-            change = -value / slope if slope else 0.0
-            if not abs(change) < (at - before) + 1e-9:
-                break
-            at += change
-            y = reach(at)
-            value = guard(at, y)
-            if abs(change) < 1e-16 * max(1.0, at):
-                break
-        return at, y
 
     # ---- following
 
@@ -375,7 +376,7 @@ class Solver:
             turned = cross(momentum, n) / self.I1
             # omega = L / I1 + k n with constant k, so that its rate is that of the axis
             k = (self.I1 - self.I3) / self.I1 * (n @ w)
-            return np.concatenate((turned, k * turned, [0.0, 0.0, -self.gravity], [y[8]]))
+            return np.concatenate((turned, k * turned, self.field, [y[8]]))
 
         guards = {
             i: (lambda _, y, i=i: self.gap(i, y[:3], y[9])) for i in range(len(self.supports))
@@ -384,7 +385,7 @@ class Solver:
 
     def smooth(self, rates, guards, mode):
         longest = self.longest()
-        x, y, hit = self.advance(rates, self.packed(), guards, self.until(), self.scale, longest)
+        x, y, hit = advance(rates, self.packed(), guards, self.until(), self.scale, longest)
         self.time += x
         self.unpack(y)
         if self.closed:
@@ -551,10 +552,10 @@ class Solver:
                 return response(np.array([force[0], force[1], 1.0]), torque)
 
             most = 20.0 * self.mass * abs(approach)
-            p, q, hit = self.advance(rates, q, {"end": rises}, most, scale, most / 40.0)
+            p, q, hit = advance(rates, q, {"end": rises}, most, scale, most / 40.0)
             assert hit == "end"
             if self.restitution:
-                _, q, _ = self.advance(rates, q, {}, self.restitution * p, scale)
+                _, q, _ = advance(rates, q, {}, self.restitution * p, scale)
             self.u, self.w = q[:3].copy(), q[3:6].copy()
             return False
         slip = velocity(q)[:2]
@@ -576,7 +577,7 @@ class Solver:
         while True:
             if p is not None:
                 guards["end"] = lambda _, x, left=left: left - x[8]
-            _, x, hit = self.advance(clocked, x, guards, 1e9, scale)
+            _, x, hit = advance(clocked, x, guards, 1e9, scale)
             if hit == "stop":
                 sticks = True
                 break
@@ -627,7 +628,7 @@ class Solver:
         for j in self.opened():
             guards[j] = lambda _, y, j=j: self.supports[i](y[2])[0] - self.supports[j](y[2])[0]
         longest = self.longest_rolling
-        x, y, hit = self.advance(rates, self.packed(), guards, self.until(), self.scale, longest)
+        x, y, hit = advance(rates, self.packed(), guards, self.until(), self.scale, longest)
         self.time += x
         self.unpack(y)
         self.on_table()
@@ -785,7 +786,7 @@ class Solver:
         size = max(1.0, np.linalg.norm(self.w))
         scale = np.array([1.0] * 3 + [size] * 3 + [max(self.s, 1e-3), 1.0, 1.0])
         bound = 1e12 if slow or jams else 1.1 * left + 1e-9
-        _, y, hit = self.advance(rates, y, guards, bound, scale, np.inf if slow else 2e-3)
+        _, y, hit = advance(rates, y, guards, bound, scale, np.inf if slow else 2e-3)
         self.n, self.w, self.s, self.phi = y[:3].copy(), y[3:6].copy(), float(y[6]), float(y[7])
         self.time += float(y[8])
         slip = self.s * np.array([math.cos(self.phi), math.sin(self.phi), 0.0])

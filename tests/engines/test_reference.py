@@ -10,13 +10,14 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import tippetop as tt
+from independent_motions import disk_friction
 from independent_reference import computed
 from independent_solver import Solver, hertz
 from tippetop.cli.commands import app
 from tippetop.engines import reference as suite
 from tippetop.engines.cases import CASES
 
-BRIEF = ("restitution", "painleve", "rest")
+BRIEF = ("restitution", "painleve", "rest", "ball")
 """Cases that take about a second."""
 
 WHOLE = [
@@ -24,7 +25,7 @@ WHOLE = [
     for case in CASES
 ]
 
-LONG = ("viscous", "flights", "stem", "stick-slip")
+LONG = ("viscous", "flights", "stem", "stick-slip", "disk-end")
 AGAIN = [
     pytest.param(case.name, marks=pytest.mark.campaign)
     if case.name in LONG
@@ -179,6 +180,35 @@ def test_no_case_of_this_name(tmp_path):
     assert isinstance(result.exception, tt.InvalidInput)
     assert "painleve" in str(result.exception)
     assert not (tmp_path / "s").exists()
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.653, 1.0, 1.0001, 3.0])
+def test_the_second_methods_face_is_coulomb_friction_all_over_it(ratio):
+    """Each part slides with its own velocity under the same pressure."""
+    count, radius = 1500, 0.02
+    middles = (np.arange(count) + 0.5) / count
+    r, angle = np.meshgrid(radius * np.sqrt(middles), 2.0 * math.pi * middles)
+    x, y = r * np.cos(angle), r * np.sin(angle)
+    vx, vy = ratio * radius - y, x
+    size = np.hypot(vx, vy)
+    force, torque = disk_friction(ratio * radius, 1.0, radius)
+    assert np.mean(vx / size) == pytest.approx(force, abs=1e-5)
+    assert np.mean((x * vy - y * vx) / size) == pytest.approx(torque, abs=1e-5 * radius)
+
+
+def test_a_ball_on_a_slope_ends_as_its_closed_solution():
+    """Slip changes by (7/2) times friction plus gravity along the table, and rolling down takes
+    five sevenths of that.
+    """
+    case = suite.case_of("slope")
+    rows = np.array(suite.independent(case)["states"])
+    ((stop, *_),) = suite.independent(case)["events"]
+    late = rows[rows[:, 0] > stop]
+    slope, azimuth = case.problem.table.slope, case.problem.table.azimuth
+    down = 5.0 / 7.0 * case.problem.gravity * math.sin(slope)
+    change = (late[-1] - late[0])[7:9] / (late[-1] - late[0])[0]
+    expected = [down * math.cos(azimuth), down * math.sin(azimuth)]
+    assert change == pytest.approx(expected, rel=1e-11)
 
 
 @pytest.mark.parametrize("kappa", [0.3, 0.9, 1.4, 4.0])

@@ -145,10 +145,13 @@ def test_the_state_at_launch_is_that_of_the_run_and_of_the_readme(case):
             (shape.surface for shape in body.shapes), key=lambda one: float(one.height(cosine))
         )
         up = np.array([0.0, 0.0, 1.0])
-        arm = -lowest.slope(cosine) * (axis - cosine * up) - lowest.height(cosine) * up
+        arm = -lowest.height(cosine) * up
+        if launch.tilt:  # Upright, it lies on its face: the arm is to the middle.
+            arm = arm - lowest.slope(cosine) * (axis - cosine * up)
         assert velocity == pytest.approx([*launch.slip, 0.0] - np.cross(omega, arm), abs=1e-13)
     kinetic = body.I1 * omega @ omega + (body.I3 - body.I1) * (axis @ omega) ** 2
-    potential = body.mass * case.problem.gravity * start["height"]
+    across = case.problem.gravity * np.cos(case.problem.table.slope)
+    potential = body.mass * across * start["height"]
     energy = (kinetic + body.mass * velocity @ velocity) / 2 + potential
     assert start["energy"] == pytest.approx(energy, rel=1e-13)
 

@@ -48,7 +48,7 @@ def page_of(case: Case, record: Mapping[str, Any]) -> str:
         f" {html.escape(case.tests)}. Frames, signs and units: README.md.</p>",
         _figure(case, record),
         "<h2>Equations</h2>",
-        *(f"<p>{html.escape(line)}</p>" for line in _equations(case)),
+        *(f"<p>{html.escape(line)}</p>" for line in _equations(case, record)),
         "<h2>Parameters and state at launch</h2>",
         _table(("field", "value", "unit", "meaning"), _parameters(case)),
         f"<h2>Results at {case.duration:g} s</h2>",
@@ -67,21 +67,31 @@ def page_of(case: Case, record: Mapping[str, Any]) -> str:
     )
 
 
-def _equations(case: Case) -> Iterator[str]:
+def _equations(case: Case, record: Mapping[str, Any]) -> Iterator[str]:
     """Yield what holds in a case, in lines."""
     problem = case.problem
+    weight = "− m g z" if problem.table.is_level else "+ m g (sin b cos d, sin b sin d, −cos b)"
     yield (
-        "m u′ = F − m g z,  L′ = a × F + M,  n′ = ω × n,  L = I1 ω + (I3 − I1)(n·ω) n;"
+        f"m u′ = F {weight},  L′ = a × F + M,  n′ = ω × n,  L = I1 ω + (I3 − I1)(n·ω) n;"
         "  N = F·z ≥ 0, gap ≥ 0, N gap = 0."
     )
     yield "a = −h′(c)(n − c z) − h(c) z, c = n·z; v = u + ω × a; w = ω·z; F = N (z + f)."
     friction = problem.friction
     kind = getattr(friction, "pressure", friction.kind)
     yield f"Friction, {friction.kind}: {LAWS[kind]}."
+    if _lies_flat(case, record):
+        yield "On its face: the law on every part of it, under uniform pressure (README.md)."
     if problem.rolling_resistance:
         yield "Rolling resistance: couple −N e w_t/|w_t|, at most N e where w_t = 0."
     if problem.contact.restitution:
         yield "Impacts: friction along the normal impulse (Routh), Poisson's restitution."
+
+
+def _lies_flat(case: Case, record: Mapping[str, Any]) -> bool:
+    """Return whether a body with a flat face is upright at one of the instants of a case."""
+    has_face = any(isinstance(shape, tt.Ring) for shape in case.problem.body.shapes)
+    upright = [record["start"]["tilt"], *record["states"]["tilt"]["values"]]
+    return has_face and min(upright) == 0.0
 
 
 def _parameters(case: Case) -> Iterator[Sequence[str]]:

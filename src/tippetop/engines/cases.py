@@ -71,6 +71,20 @@ def _rolling_balls() -> tt.Launch:
     return tt.Launch(tilt=tilt, precession=turning, spin=spin, tilt_rate=2.0)
 
 
+def _uniform(mass: float, radius: float) -> tt.Body:
+    """Return a solid ball."""
+    inertia = 0.4 * mass * radius**2
+    shape = tt.Sphere(radius=radius, center=0.0)
+    return tt.Body(mass=mass, shape=shape, I1=inertia, I3=inertia)
+
+
+def _flat_disk(mass: float, radius: float, thickness: float) -> tt.Body:
+    """Return a solid disk with sharp edges."""
+    axial, half = 0.5 * mass * radius**2, 0.5 * thickness
+    edges = [tt.Ring(radius=radius, center=side) for side in (-half, half)]
+    return tt.Body(mass=mass, shape=edges, I1=axial / 2 + mass * thickness**2 / 12, I3=axial)
+
+
 CASES = (
     Case(
         "viscous",
@@ -212,6 +226,74 @@ CASES = (
         ),
         2e-3,
         judged=SAMPLES,
+    ),
+    Case(
+        "puck",
+        "A puck slides and spins on its face until both end at once",
+        "friction of a face that slides and spins, and rest",
+        tt.Problem(
+            body=_flat_disk(mass=0.05, radius=0.02, thickness=0.005),
+            friction=tt.CoulombFriction(mu=0.3),
+            launch=tt.Launch(tilt=0.0, spin=25.0, slip=(0.5, 0.3)),
+            gravity=9.81,
+        ),
+        0.3,
+    ),
+    Case(
+        "ball",
+        "A ball slips, rolls to a stop, and drills to its rest",
+        "rolling resistance and drilling that end one after the other",
+        tt.Problem(
+            body=_uniform(mass=0.1, radius=0.02),
+            friction=tt.ContensouFriction(mu=0.2, patch_radius=2e-3, pressure="hertz"),
+            launch=tt.Launch(tilt=0.5, spin=40.0, precession=30.0, slip=(0.2, 0.1)),
+            gravity=9.81,
+            rolling_resistance=5e-4,
+        ),
+        3.2,
+    ),
+    Case(
+        "peg",
+        "A peg top slips on its tip, sticks, and precesses",
+        "the end of slip on a tip of half a millimetre, and nutation for many periods",
+        tt.Problem(
+            body=tt.Body(
+                mass=0.05,
+                shape=[tt.Sphere(radius=5e-4, center=-0.03), tt.Sphere(radius=0.02, center=0.0)],
+                I1=1e-5,
+                I3=1.4e-5,
+            ),
+            friction=tt.CoulombFriction(mu=0.3),
+            launch=tt.Launch(tilt=0.3, spin=250.0, velocity=_AT_REST),
+            gravity=9.81,
+        ),
+        2.0,
+    ),
+    Case(
+        "slope",
+        "A ball is thrown across a slope, slips, and rolls down",
+        "gravity that is not across the table, and slip that turns round",
+        tt.Problem(
+            body=_uniform(mass=0.1, radius=0.02),
+            friction=tt.CoulombFriction(mu=0.2),
+            launch=tt.Launch(tilt=0.5, spin=-40.0, precession=30.0, slip=(0.6, -0.3)),
+            gravity=9.81,
+            table=tt.Table(slope=0.15, azimuth=0.7),
+        ),
+        1.0,
+    ),
+    Case(
+        "disk-end",
+        "Euler's disk wobbles down to its end on a film, and spins on upon its face",
+        "a precession without bound, and what comes after it",
+        tt.Problem(
+            body=tt.presets.EULER_DISK,
+            friction=tt.ViscousFriction(mu=2.0),
+            launch=tt.Launch(tilt=0.1, spin=15.0, precession=100.0),
+            gravity=9.81,
+            rolling_resistance=2e-3,
+        ),
+        1.0,
     ),
 )
 """The suite, in the order of its files."""

@@ -34,6 +34,8 @@ such as a component that is zero, the methods give rounding.
 
 NOT_CONFIRMED = "the second method has not computed it"
 
+NO_PLACE = "on a slope the energy that states list leaves out the work of gravity along the table"
+
 
 class Derivative(NamedTuple):
     """The derivative of a number of a case by a parameter."""
@@ -97,6 +99,10 @@ def derivatives(case: Case, columns: Mapping[str, str]) -> list[Derivative]:
         ]
     slopes = tt.sensitivities(case.problem, case.duration, names, times=[0.0, *case.times])
     reasons = [str(reason) for reason in slopes["reason"].values]
+    if not case.problem.table.is_level:
+        # The energy of a run is that of its place too, which states do not list.
+        slopes["energy"] = slopes["energy"] * math.nan
+        reasons = [reason or NO_PLACE for reason in reasons]
     first = {name: _numbers(slopes.isel(parameter=k), columns) for k, name in enumerate(names)}
     second = {one["parameter"]: _stored_numbers(one, columns) for one in stored["parameters"]}
     largest = {name: LEAST * _natural_unit(case, units) for name, units in columns.items()}

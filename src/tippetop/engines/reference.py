@@ -18,12 +18,13 @@ from tippetop.engines.bodies import launch_state
 from tippetop.engines.case_page import page_of
 from tippetop.engines.cases import CASES, Case
 from tippetop.engines.derivatives import Derivative, derivatives, units_of
+from tippetop.engines.outline import POLE
 from tippetop.problem.problem import top_of
 from tippetop.results.dataset import CONVENTIONS
 from tippetop.support.files import make_folder, place_for, written_beside
 from tippetop.support.suggestions import not_one_of
 
-SUITE_VERSION = "1.0"
+SUITE_VERSION = "1.1"
 """Version of the cases: another problem, launch or instant is another version."""
 
 INDEPENDENT_FOLDER = "independent"
@@ -42,6 +43,8 @@ ROUNDING = 2.0**-52
 
 Array = NDArray[np.float64]
 
+UP = np.array([0.0, 0.0, 1.0])
+
 COLUMNS: Mapping[str, tuple[str, str]] = {
     "tilt": ("rad", "tilt of the axis from the vertical"),
     "axis_x": ("1", "unit vector along the axis of symmetry"),
@@ -54,8 +57,11 @@ COLUMNS: Mapping[str, tuple[str, str]] = {
     "velocity_y": ("m s-1", "velocity of the centre of mass"),
     "velocity_z": ("m s-1", "velocity of the centre of mass"),
     "height": ("m", "height of the centre of mass above the table"),
-    "energy": ("J", "kinetic energy, and potential energy m g height"),
-    "jellett": ("kg m2 s-1 m", "-L.a, with a from the centre of mass to the lowest point"),
+    "energy": ("J", "kinetic energy, and m times height times gravity across the table"),
+    "jellett": (
+        "kg m2 s-1 m",
+        "-L.a, with a from the centre of mass to the lowest point, or the middle of a face",
+    ),
 }
 """The numbers of a state: their units and meaning; x and y along the table, z up."""
 
@@ -143,16 +149,17 @@ def numbers_of(
     for n, L in zip(axis, momentum, strict=True):
         surfaces = [shape.surface for shape in body.shapes]
         lowest = max(surfaces, key=lambda surface: float(surface.height(n[2])))
-        slope, support = float(lowest.slope(n[2])), float(lowest.height(n[2]))
-        up = np.array([0.0, 0.0, 1.0])
-        jellett.append(float(L @ (slope * (n - n[2] * up) + support * up)))
+        arm = -float(lowest.height(n[2])) * UP
+        if np.hypot(n[0], n[1]) > POLE:  # On a face the arm is to its middle.
+            arm -= float(lowest.slope(n[2])) * (n - n[2] * UP)
+        jellett.append(-float(L @ arm))
     return {
         "tilt": np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2]),
         **_components("axis", axis),
         **_components("angular_velocity", omega),
         **_components("velocity", velocity),
         "height": height,
-        "energy": energy + body.mass * problem.gravity * height,
+        "energy": energy - body.mass * problem.gravity_vector[2] * height,
         "jellett": np.array(jellett),
     }
 

@@ -58,7 +58,8 @@ class MoreauStepper:
         body, friction, start = problem.body, problem.friction, problem.start()
         self.step = step
         self.mass, self.I1, self.I3 = body.mass, body.I1, body.I3
-        self.gravity, self.rebound = problem.gravity, problem.contact.restitution
+        self.gravity = np.array(problem.gravity_vector)
+        self.rebound = problem.contact.restitution
         shapes = primitives(body, ellipsoids=False) or ()
         self.balls = [(shape.sizes[0], shape.center) for shape in shapes]
         self.mu = float(getattr(friction, "mu", 0.0))
@@ -73,7 +74,7 @@ class MoreauStepper:
         """Take a number of steps."""
         for _ in range(steps):
             self._move(0.5 * self.step)
-            self.u[2] -= self.step * self.gravity
+            self.u += self.step * self.gravity
             self._impulses()
             self._move(0.5 * self.step)
 
@@ -117,7 +118,7 @@ class MoreauStepper:
         omega = across * self.L + along * (self.L @ self.n) * self.n
         free = linear @ self.u + angular @ omega
         if self.rebound:
-            before = free[3::4] + self.step * self.gravity
+            before = free[3::4] - self.step * self.gravity[2]
             free[3::4] += self.rebound * np.minimum(before, 0.0)
         impulse = np.concatenate([self.held[number] for number, _ in contacts])
         impulse = self._solved(D, free, impulse)
