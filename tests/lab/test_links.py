@@ -4,6 +4,7 @@ import json
 import re
 from pathlib import Path
 
+import tippetop as tt
 from bundled import found_in_the_page
 
 REOPENED = """
@@ -29,7 +30,9 @@ const CHANGES = [
   () => ({ "launch.tilt_rate": number(-9, 9), "launch.gap": number(0, 1e-4) }),
   () => ({ "launch.velocity": [number(-1, 1), number(-1, 1), 0] }),
   () => ({ "friction.mu": number(0.01, 3) }),
-  () => ({ "friction.kind": one(["viscous", "coulomb", "contensou", "regularized_coulomb"]) }),
+  () => ({ "friction.kind": one(
+    ["viscous", "coulomb", "static_coulomb", "contensou", "regularized_coulomb"]) }),
+  () => ({ "air.axial_linear": number(0, 2e-6), "air.transverse_linear": number(0, 2e-6) }),
   () => ({ "contact.liftoff": one(["fly", "stop", "ignore"]) }),
   () => ({ "contact.restitution": number(0, 1) }),
   () => ({ gravity: number(1, 20), rolling_resistance: number(0, 1e-4) }),
@@ -41,6 +44,7 @@ const push = () => ({
   impulse: number(0, 0.01),
   direction: number(-3, 3),
   mu: one([null, number(0, 1)]),
+  slope: one([null, number(0, 0.3)]),
 });
 const launch = () => withPushes(
   some(CHANGES).reduce((setup, change) => changed(setup, change()), one(PRESETS).setup),
@@ -106,3 +110,29 @@ def test_links_of_the_documentation_are_read_whole() -> None:
     assert len(links) > 6
     found = found_in_the_page(READ % json.dumps(links))
     assert [link for link, unread in zip(links, found, strict=True) if unread] == []
+
+
+DIALS = """
+import { ALL } from "./dials.js";
+import { part } from "./i18n.js";
+import { changed, FIRST, fieldValue } from "./setup.js";
+const laws = ["viscous", "coulomb", "static_coulomb", "contensou", "regularized_coulomb"].map(
+  (kind) => changed(FIRST, { "friction.kind": kind }));
+const named = ALL.filter(({ field }) => {
+  const { name, symbol, help } = part(`quantities.${field}`);
+  return name && symbol && help && laws.some((setup) => fieldValue(setup, field) !== undefined);
+});
+export const found = [
+  ALL.map(({ field }) => field),
+  named.map(({ field }) => field),
+  laws.map(({ problem }) => problem.friction),
+];
+"""
+
+
+def test_every_law_and_the_air_have_dials_with_names() -> None:
+    every, named, laws = found_in_the_page(DIALS)
+    assert {"friction.static_mu", "air.axial_linear", "air.transverse_linear"} <= set(every)
+    assert named == every
+    for friction in laws:
+        assert tt.presets.report_problem().replace({"friction": friction}).friction.law

@@ -9,7 +9,7 @@ import { same } from "./setup.js";
 import { CHOICES, shown } from "./units.js";
 import { heading } from "./words.js";
 
-const LAWS = ["viscous", "coulomb", "contensou", "regularized_coulomb"];
+const LAWS = ["viscous", "coulomb", "static_coulomb", "contensou", "regularized_coulomb"];
 // Marks beyond the slider of the spin, rad/s, are not shown.
 const HIGHEST_MARK = 250;
 

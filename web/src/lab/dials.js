@@ -8,6 +8,7 @@ export const MAIN = [
   dial("friction.mu", "", 0.01, 10, 0.01, true),
 ];
 export const LAW = [
+  dial("friction.static_mu", "", 0.01, 10, 0.01, true),
   dial("friction.eps", "m/s", 1e-5, 0.1, 0.01, true),
   dial("friction.patch_radius", "mm", 1e-5, 1e-2, 0.01, true),
 ];
@@ -16,6 +17,8 @@ export const TABLE = [
   dial("gravity", "m/s²", 0.1, 25, 0.1),
   dial("rolling_resistance", "mm", 0, 1e-3, 1e-5),
   dial("table.slope", "angle", 0, 0.3, 1e-3),
+  dial("air.axial_linear", "µN m s", 0, 2e-6, 1e-8),
+  dial("air.transverse_linear", "µN m s", 0, 2e-6, 1e-8),
   dial("duration", "s", 1, 60, 1),
 ];
 export const TOP = [

@@ -12,10 +12,11 @@ const USUAL_FRICTION = 0.3;
 
 // What each law has beside the friction coefficient, and where that starts.
 const LAWS = {
-  viscous: {},
-  coulomb: {},
-  regularized_coulomb: { eps: 1e-3 },
-  contensou: { patch_radius: 3e-4, pressure: "hertz" },
+  viscous: () => ({}),
+  coulomb: () => ({}),
+  static_coulomb: (mu) => ({ static_mu: Number((1.5 * mu).toPrecision(3)) }),
+  regularized_coulomb: () => ({ eps: 1e-3 }),
+  contensou: () => ({ patch_radius: 3e-4, pressure: "hertz" }),
 };
 
 export function fieldValue({ problem, duration }, field) {
@@ -45,7 +46,8 @@ export function changed(setup, changes) {
 function changeLaw(problem, kind) {
   const { friction } = problem;
   if (friction.kind === kind) return;
-  problem.friction = { kind, mu: friction.mu || USUAL_FRICTION, ...LAWS[kind] };
+  const mu = friction.mu || USUAL_FRICTION;
+  problem.friction = { kind, mu, ...LAWS[kind](mu) };
 }
 
 function setField(problem, field, value) {

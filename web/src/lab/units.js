@@ -33,6 +33,7 @@ export function unitOf(kind, units) {
     return { name: units.angle === "deg" ? "°" : "rad", size: ANGLES[units.angle] };
   if (kind === "mm") return { name: "mm", size: 1e-3 };
   if (kind === "gram") return { name: "g", size: 1e-3 };
+  if (kind === "µN m s") return { name: "µN m s", size: 1e-6 };
   if (kind === "mJ") return { name: "mJ", size: 1e-3 };
   return { name: kind ?? "", size: 1 };
 }
