@@ -9,14 +9,15 @@ from sweep_cases import lively, problem_of, stored, thrown, truth
 
 import tippetop as tt
 from tippetop.problem.presets import report_problem
+from tippetop.results.samples import OF_INSTANTS
 from tippetop.run import simulate
 from tippetop.support.errors import InvalidInput
 from tippetop.sweeps import Product, Store, Sweep, compute, fill, read_sweep
 from tippetop.sweeps.axes import Axis
 from tippetop.sweeps.contents import CONTENTS
-from tippetop.sweeps.trajectory_samples import SAMPLED_IN_SWEEPS
+from tippetop.sweeps.trajectory_samples import SUMMED_UP
 
-EVERY = tuple(SAMPLED_IN_SWEEPS)
+EVERY = tuple(OF_INSTANTS)
 
 
 def with_samples(sweep, **fields):
@@ -87,6 +88,55 @@ def test_samples_of_bodies_of_several_surfaces():
     )
     sweep = Sweep(problem, Product((Axis.of("launch.spin", [120.0, 180.0]),)), 0.3, 1e-12)
     check_against_runs(with_samples(sweep, samples=11), closeness=1e-6)
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 2.5])
+def test_samples_of_what_is_summed_up_are_those_of_single_runs(azimuth):
+    """Position, orientation, work and losses, in slides, flights, impacts and at the pole."""
+    problem = report_problem(tilt=0.3, spin=175.0).replace({"launch.azimuth": azimuth})
+    tilts = Product((Axis.of("launch.tilt", [0.0, 0.3, 2.0]),))
+    sweep = Sweep(problem, tilts, 3.0, 1e-12)
+    found = check_against_runs(with_samples(sweep, keep=(*SUMMED_UP, "tilt")), closeness=1e-6)
+    assert found["orientation"].dims == ("launch.tilt", "time", "quaternion")
+    assert float(abs(found["x"]).max()) > 1e-3
+    assert (found["work"].isel(time=-1) < 0.0).any()
+
+
+def test_events_up_to_a_bound_are_those_of_single_runs(tmp_path):
+    problem, spins = report_problem(tilt=0.3), [5.0, 155.0, 175.0]
+    options = {"duration": 6.0, "keep": ["events", "tilt"], "samples": 3, "most_events": 4}
+    found = tt.sweep(problem, {"launch.spin": spins}, workers=1, **options)
+    kept = tt.sweep(problem, {"launch.spin": spins}, workers=1, out=tmp_path / "a.zarr", **options)
+    xr.testing.assert_identical(kept.load(), found)
+    counts = []
+    for spin in spins:
+        run, cell = simulate(problem.replace({"launch.spin": spin}), 6.0), found.sel(spin=spin)
+        count = len(run["event_time"])
+        counts.append(count)
+        assert int(cell["event_count"]) == count
+        listed = min(count, 4)
+        kinds = [kind.replace(" ", "_") for kind in run["event_kind"].values[:4]]
+        assert cell["event_kind"].values.tolist() == kinds + [""] * (4 - listed)
+        for name in ("event_time", "event_impulse", "event_energy_lost"):
+            np.testing.assert_allclose(cell[name][:listed], run[name][:4], rtol=1e-6, atol=1e-12)
+            assert np.isnan(cell[name][listed:]).all()
+    assert min(counts) < 4 < max(counts)
+
+
+def test_sweeps_that_keep_come_back_from_their_description():
+    kept = {"keep": ("tilt", "events"), "samples": 7, "most_events": 3}
+    sweep = with_samples(lively("fly", 2, 1, 0.1, 1e-9), **kept)
+    fields = sweep.to_fields()
+    assert (fields["most_events"], fields["samples"]) == (3, 7)
+    assert Sweep(**fields) == sweep
+
+
+def test_events_alone_have_no_samples():
+    found = tt.sweep(
+        report_problem(), {"launch.spin": [175.0]}, duration=0.2, keep="events", workers=1
+    )
+    assert "time" not in found.dims
+    assert found["event_time"].shape == (1, 20)
 
 
 def test_samples_at_given_times_dense_or_sparse_are_those_of_single_runs():
@@ -189,10 +239,11 @@ def test_a_coordinate_makes_room_for_a_variable_of_its_name():
     [
         ({"keep": "theta"}, "did you mean tilt"),
         ({"keep": ["tilt", "tilt"]}, "every variable once"),
-        ({"keep": ["x"]}, "summed up along a run"),
         ({"keep": 3}, "a name, or a list of names, such as tilt"),
-        ({"samples": 5}, "samples: 5 is only for keep"),
-        ({"times": [0.1]}, "is only for keep"),
+        ({"samples": 5}, "samples: 5 is only for"),
+        ({"times": [0.1]}, "is only for"),
+        ({"keep": "events", "samples": 5}, "samples: 5 is only for samples of variables in keep"),
+        ({"keep": "tilt", "most_events": 5}, 'is only for "events" in keep'),
         ({"keep": "tilt", "samples": 5, "times": [0.1]}, "is given beside times"),
         ({"keep": "tilt", "times": [0.2, 0.1]}, "increasing"),
         ({"keep": "tilt", "times": [0.0, 2.0]}, "from 0 to the duration, 1 s"),

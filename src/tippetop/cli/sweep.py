@@ -81,7 +81,10 @@ Keep = Annotated[
     list[str] | None,
     typer.Option(
         metavar="VARIABLE",
-        help="Keep samples of a variable over time, such as tilt or axis; may be repeated.",
+        help=(
+            "Keep samples of a variable over time, such as tilt or axis, or the events; may be"
+            " repeated."
+        ),
     ),
 ]
 Samples = Annotated[

@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.results.catalogue import SAMPLED, SWEPT, Variable
+from tippetop.contact.mode import EventKind
+from tippetop.results.catalogue import LISTED, SAMPLED, SWEPT, Variable
 from tippetop.results.dataset import COMPONENTS, TIME
 from tippetop.sweeps.definition import Sweep
 from tippetop.sweeps.grid import field_paths
@@ -20,6 +21,20 @@ CONTENTS: Mapping[str, Variable] = {
 IS_SAMPLED = Variable(
     "whether the run lasts to the time of the sample; the others are not numbers", dtype="bool"
 )
+
+
+EVENT_COUNT = Variable(
+    "number of events of the run, of which the first are listed", "1", dtype="int32"
+)
+
+OF_EVENTS: Mapping[str, Variable] = {
+    name: variable for name, variable in LISTED.items() if name.startswith("event_")
+} | {
+    "event_kind": LISTED["event_kind"]._replace(
+        dtype="int8", flags=tuple(kind.value.replace(" ", "_") for kind in EventKind)
+    )
+}
+"""Variables over the events of every launch; words of several have _ between them, as in CF."""
 
 
 class Content(NamedTuple):
@@ -37,11 +52,15 @@ class Content(NamedTuple):
 def contents_of(sweep: Sweep) -> dict[str, Content]:
     """Return the variables of a sweep's dataset by name."""
     contents = {name: Content(variable) for name, variable in CONTENTS.items()}
-    if not sweep.keep:
+    if sweep.event_places:
+        contents["event_count"] = Content(EVENT_COUNT)
+        places = ("event",), (sweep.event_places,)
+        contents |= {name: Content(variable, *places) for name, variable in OF_EVENTS.items()}
+    if not sweep.sampled:
         return contents
     count = len(sweep.sample_times)
     contents["is_sampled"] = Content(IS_SAMPLED, ("time",), (count,))
-    for name in sweep.keep:
+    for name in sweep.sampled:
         components = SAMPLED[name].dimensions
         widths = (len(COMPONENTS[dimension]) for dimension in components)
         contents[name] = Content(SAMPLED[name], ("time", *components), (count, *widths))
@@ -50,7 +69,7 @@ def contents_of(sweep: Sweep) -> dict[str, Content]:
 
 def coordinates_of(sweep: Sweep) -> dict[str, tuple[str, NDArray[Any]]]:
     """Return the dimension and the values of the coordinates of a sweep's dataset, by name."""
-    times = {"time": ("time", sweep.sample_times)} if sweep.keep else {}
+    times = {"time": ("time", sweep.sample_times)} if sweep.sampled else {}
     return sweep.coordinates() | times
 
 

@@ -33,7 +33,6 @@ from tippetop.sweeps.axes import Count
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.draws import Column, Draws, columns_of
 from tippetop.sweeps.grid import Product
-from tippetop.sweeps.trajectory_samples import SAMPLED_IN_SWEEPS
 from tippetop.theory.requirements import require_jellett
 
 DEFAULT_TOLERANCE = 1e-9
@@ -51,8 +50,17 @@ LEAST_TOLERANCE = float(np.finfo(float).eps)
 DEFAULT_KEPT_SAMPLES = 201
 """Number of samples that are kept of a run if nobody says how many."""
 
+EVENTS = "events"
+"""Name under which the events of every launch are kept."""
+
+DEFAULT_MOST_EVENTS = 20
+"""Number of events that are kept of a run at most if nobody says how many."""
+
 MOST_COMPONENTS = 3
 """Most components of a variable that is kept."""
+
+NUMBERS_OF_AN_EVENT = 5
+"""How many numbers are kept of an event."""
 
 MOST_NUMBERS_A_TASK = 2**23
 """Numbers of samples in a task, about, at most: 64 MB."""
@@ -111,11 +119,13 @@ class Sweep(Part):
     `tippetop.theory.prediction.is_held`); None to follow every run for its whole duration.
     """
     keep: Annotated[tuple[str, ...], BeforeValidator(_names)] = ()
-    """Variables over time of which samples are kept, of `SAMPLED_IN_SWEEPS`."""
+    """Variables over time of which samples are kept, of `SAMPLED`; and `EVENTS`."""
     samples: Annotated[Whole, Field(ge=2)] | None = None
     """Number of equally spaced samples from launch to the duration; 201 by default."""
     times: Annotated[tuple[Number, ...], BeforeValidator(_seconds)] | None = None
     """Sample times instead, s."""
+    most_events: Annotated[Whole, Field(ge=1)] | None = None
+    """Number of events that are kept of a run, the first ones; 20 by default."""
 
     def __init__(self, /, *values: Any, **fields: Any) -> None:
         fields = in_order(
@@ -170,25 +180,33 @@ class Sweep(Part):
 
     def _require_samples(self) -> None:
         """Refuse samples that cannot be kept."""
-        if not self.keep:
-            self._refuse("keep", ("samples", "times"))
-            return
+        if not self.sampled:
+            self._refuse("samples of variables in keep", ("samples", "times"))
+        if EVENTS not in self.keep:
+            self._refuse('"events" in keep', ("most_events",))
         for name in self.keep:
-            if name in SAMPLED and name not in SAMPLED_IN_SWEEPS:
-                fault = "is summed up along a run, and not kept in sweeps"
-                raise InvalidInput("keep", name, "", fault, "follow the launches with simulate")
-            if name not in SAMPLED_IN_SWEEPS:
-                raise not_one_of("keep", name, list(SAMPLED_IN_SWEEPS))
+            if name not in (*SAMPLED, EVENTS):
+                raise not_one_of("keep", name, [*SAMPLED, EVENTS])
         if len(set(self.keep)) < len(self.keep):
             raise InvalidInput("keep", list(self.keep), "every variable once")
         if self.samples is not None and self.times is not None:
             raise InvalidInput("samples", self.samples, "", "is given beside times", "omit one")
         _ = self.sample_times
 
-    @cached_property
+    @property
+    def sampled(self) -> tuple[str, ...]:
+        """Names of the variables of which samples are kept."""
+        return tuple(name for name in self.keep if name != EVENTS)
+
+    @property
+    def event_places(self) -> int:
+        """How many events of every launch are kept at most; 0 if none are."""
+        return (self.most_events or DEFAULT_MOST_EVENTS) if EVENTS in self.keep else 0
+
+    @property
     def sample_times(self) -> Array:
         """Times of the samples that are kept, s, shape (k,); none if nothing is kept."""
-        if not self.keep:
+        if not self.sampled:
             return np.empty(0)
         return sample_times(self.duration, self.samples or DEFAULT_KEPT_SAMPLES, self.times)
 
@@ -220,7 +238,8 @@ class Sweep(Part):
         them.
         """
         target = min(max(self.cells // TASKS, LEAST_CELLS_A_TASK), MOST_CELLS_A_TASK)
-        numbers = len(self.sample_times) * len(self.keep) * MOST_COMPONENTS
+        numbers = len(self.sample_times) * len(self.sampled) * MOST_COMPONENTS
+        numbers += self.event_places * NUMBERS_OF_AN_EVENT
         target = min(target, max(MOST_NUMBERS_A_TASK // max(numbers, 1), 1))
         chunk = list(self.grid.shape)
         while math.prod(chunk) > target and max(chunk) > 1:

@@ -25,14 +25,14 @@ from tippetop.results.monitor import STATUSES_OF_MOTION, Monitor, monitored_quan
 from tippetop.results.settling import settled_tilts
 from tippetop.support.errors import Unavailable
 from tippetop.sweeps.cells import cells_of, spread
-from tippetop.sweeps.contents import contents_of
-from tippetop.sweeps.definition import Sweep
+from tippetop.sweeps.contents import OF_EVENTS, contents_of
+from tippetop.sweeps.definition import EVENTS, Sweep
 from tippetop.sweeps.grid import Flat
 from tippetop.sweeps.lane_executor import Lanes, arrivals
 from tippetop.sweeps.launch_arrays import Launches
 from tippetop.sweeps.single_launches import follow_each, is_alone, note_failure
 from tippetop.sweeps.taylor_stepper import stepper
-from tippetop.sweeps.trajectory_samples import TrajectorySamples
+from tippetop.sweeps.trajectory_samples import SUMMED_UP, TrajectorySamples
 
 LANES_AT_ONCE = 2048
 """Launches that are followed together: enough to make little of Python's part, few enough for the
@@ -82,9 +82,9 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         return variables
     launches = cells.launches(good, sweep.duration)
     method = None
-    if not is_alone(launches):
+    if not (is_alone(launches) or {*SUMMED_UP, EVENTS} & set(sweep.keep)):
         motion = swept_motion(launches.kind)
-        method = stepper(motion, sweep.tolerance, sampled=bool(sweep.keep))
+        method = stepper(motion, sweep.tolerance, sampled=bool(sweep.sampled))
     alike = np.argsort(expected_cost(launches), kind="stable")
     for first in range(0, len(alike), LANES_AT_ONCE):
         block = alike[first : first + LANES_AT_ONCE]
@@ -92,8 +92,14 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         units = Units(*(spread(unit, count)[which] for unit in cells.units))
         samples = None
         if sweep.keep:
-            arrays: dict[str, Any] = {name: variables[name] for name in sweep.keep}
-            samples = TrajectorySamples(some, units, sweep.sample_times, arrays, which)
+            arrays: dict[str, Any] = {name: variables[name] for name in sweep.sampled}
+            azimuths = spread(cells.problem.launch.azimuth, count)[which]
+            samples = TrajectorySamples(some, units, sweep.sample_times, arrays, which, azimuths)
+            if sweep.event_places:
+                listed: dict[str, Any] = {
+                    name: variables[name] for name in ("event_count", *OF_EVENTS)
+                }
+                samples.events = listed
         if method is None:
             ends = follow_each(some, sweep.tolerance, sweep.settled, samples)
         else:
@@ -109,7 +115,8 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         values["outcome"] = outcomes_of(ends, some.state)
         if samples is not None:
             samples.finish()
-            values["is_sampled"] = samples.is_sampled
+            if sweep.sampled:
+                values["is_sampled"] = samples.is_sampled
         for name, numbers_found in values.items():
             variables[name][which] = numbers_found.astype(variables[name].dtype)
     return variables

@@ -171,6 +171,7 @@ def sweep(
     keep: str | Sequence[str] | None = None,
     samples: int | None = None,
     times: ArrayLike | None = None,
+    most_events: int | None = None,
     events: object = None,
     until: object = None,
     out: Path | str | None = None,
@@ -212,14 +213,21 @@ def sweep(
         run for its whole duration.
     keep
         Variables over time, such as ``["tilt", "axis"]``, of which samples of every launch are
-        kept: those of a run that follow from its state alone, by their names there. They are not
-        numbers after the end of a run that ends before `duration`, and `is_sampled` says so.
+        kept, by their names in a run. They are not numbers after the end of a run that ends before
+        `duration`, and `is_sampled` says so. For what is summed up along a run, such as x, y,
+        orientation and work, every launch is followed by itself, which takes longer.
     samples
         Number of equally spaced samples from launch to `duration`, of what is kept; 201 by default.
     times
         Sample times instead, s: increasing, from 0 to `duration`.
+    most_events
+        Number of events of a run, the first ones, that are kept where "events" is in `keep`; 20 by
+        default. They are `event_time`, `event_kind`, `event_impulse`, `event_energy_lost` and
+        `event_surface`, not numbers where there are fewer, and `event_count` is how many there
+        were. Every launch is then followed by itself.
     events, until
-        Not in a sweep: they are refused with a sentence. `simulate` finds the events of one launch.
+        Not in a sweep: they are refused with a sentence. `simulate` finds the instants at which
+        functions of one's own pass through zero.
     out
         Folder of a Zarr store to keep the sweep in, whose name ends in .zarr or has no ending; in
         memory if left out.
@@ -287,6 +295,7 @@ def sweep(
         keep=keep,
         samples=samples,
         times=times,
+        most_events=most_events,
     )
     require_callback("callback", callback)
     for name, flag in {"progress": progress, "decode": decode}.items():

@@ -102,12 +102,13 @@ def follow(
     automaton, state, time = begin
     top = automaton.top
     method = make_integrator(None, tolerance_of_steps(tolerance, automaton.top))
+    azimuth = 0.0 if sampled is None else float(sampled[0].azimuths[sampled[1]])
     trajectory = Trajectory(automaton, start, end, method, time=time)
     run_metrics = RunMetrics(top, launched or state)
     times = np.empty(0) if sampled is None else sampled[0].times_left(sampled[1])
     segments, recorder = (
         trajectory.segments(),
-        Recorder(top, state, 0.0, times, start.energy_lost, automaton.pulls),
+        Recorder(top, state, azimuth, times, start.energy_lost, automaton.pulls),
     )
     segments = segments if settled is None else until_settled(trajectory, segments, settled)
     for block in in_blocks(segments):
@@ -118,6 +119,8 @@ def follow(
         samples, launch = sampled
         observed = recorder.finish(trajectory.time, trajectory.state, early=False)
         samples.take_observed(launch, observed, top)
+    if sampled is not None:
+        sampled[0].take_events(sampled[1], trajectory.events)
     return run_metrics.ends(
         trajectory.state, trajectory.time, status, trajectory.events, recorder.sums
     ), run_metrics

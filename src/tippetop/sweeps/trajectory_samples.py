@@ -5,7 +5,7 @@ of time. `variables` makes those of a run of them, by the functions of a single 
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.flight import TOUCHING, Flight
-from tippetop.contact.mode import Mode
+from tippetop.contact.mode import Event, EventKind, Mode
 from tippetop.contact.natural_launch import initial_mode
 from tippetop.contact.readings import TOLD, Instants, instants, read_of_kind
 from tippetop.integrators.base import Array
@@ -26,12 +26,16 @@ from tippetop.mechanics.top import Top
 from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.results.catalogue import SAMPLED, Variable
-from tippetop.results.samples import OF_INSTANTS, Samples
+from tippetop.results.samples import OF_INSTANTS, Samples, continuous, event_in_si, observe
 from tippetop.sweeps.launch_arrays import Indices, Launches, branched, single
 from tippetop.sweeps.taylor_step import SLIDING
 
-SAMPLED_IN_SWEEPS: Mapping[str, Variable] = {name: SAMPLED[name] for name in OF_INSTANTS}
-"""Variables over time that sweeps can have: those that follow from the state."""
+SUMMED_UP: Mapping[str, Variable] = {
+    name: variable for name, variable in SAMPLED.items() if name not in OF_INSTANTS
+}
+"""Variables over time that are summed up along a run: for these a launch is followed by itself."""
+
+KINDS = tuple(EventKind)
 
 OF_THE_AXIS = {"tilt", "azimuth", "spin", "axis", "angular_momentum"}
 """Those of them that follow from axis and angular momentum alone."""
@@ -58,12 +62,18 @@ class TrajectorySamples:
     times
         The sample times, s, shape (k,).
     variables
-        Arrays for the variables in SI, by names of `SAMPLED_IN_SWEEPS`, shape (m, k, ...).
+        Arrays for the variables in SI, by names of `SAMPLED`, shape (m, k, ...); those that are
+        `SUMMED_UP` are filled by `take_observed` alone.
     rows
         The rows of the launches in these arrays, shape (n,).
+    azimuths
+        Directions into which the axes lean at launch, rad, shape (n,).
 
     Attributes
     ----------
+    events
+        Arrays for the variables of the events in SI, by name, of shape (m, places); none if events
+        are not kept.
     due
         Time of the next sample of each launch in natural units, shape (n,); inf after the last.
     """
@@ -75,7 +85,10 @@ class TrajectorySamples:
         times: Array,
         variables: Mapping[str, Array],
         rows: Indices,
+        azimuths: Array,
     ) -> None:
+        self.azimuths = azimuths
+        self.events: Mapping[str, Array] = {}
         self._launches, self._times = launches, times
         self._units = tuple(one_for_all(unit) for unit in units)
         self._numbers = [one_for_all(row) for row in launches.numbers]
@@ -134,10 +147,28 @@ class TrajectorySamples:
         first = self._next[launch]
         last = first + len(samples.times)
         units = self._units_of(launch)
+        sums = observe(samples, top, units) if SUMMED_UP.keys() & self._variables.keys() else {}
         for name, values in self._variables.items():
-            observed = OF_INSTANTS[name](samples.instants, top, units)
+            in_si = OF_INSTANTS.get(name)
+            observed = sums[name] if in_si is None else in_si(samples.instants, top, units)
+            if name == "orientation":
+                observed = continuous(observed)
             values[self._rows[launch], first:last] = observed
         self._pass(np.array([launch]), np.array([last]))
+
+    def take_events(self, launch: int, events: Sequence[Event]) -> None:
+        """Take the events of a launch, in natural units and in order of time, if they are kept."""
+        if not self.events:
+            return
+        row, units = self._rows[launch], self._units_of(launch)
+        self.events["event_count"][row] = len(events)
+        for place, event in enumerate(events[: self.events["event_time"].shape[1]]):
+            in_si = event_in_si(event, units)
+            self.events["event_time"][row, place] = in_si.time
+            self.events["event_kind"][row, place] = KINDS.index(in_si.kind)
+            self.events["event_impulse"][row, place] = in_si.impulse
+            self.events["event_energy_lost"][row, place] = in_si.energy_lost
+            self.events["event_surface"][row, place] = in_si.surface
 
     def _pass(self, launches: Indices, places: Indices) -> None:
         """Let the next samples be those of these numbers."""
