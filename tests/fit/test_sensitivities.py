@@ -298,10 +298,10 @@ FAST_FORCES = (51, 462)
 )
 @pytest.mark.filterwarnings("ignore::tippetop.Implausible")
 def test_random_problems_agree_with_differences(seed):
-    """Of the first 300 seeds of the campaign eleven fail. Where surfaces strike in turns, slip
-    turns round in an impact or ends often, some differ more (25, 69, 93, 113, 122, 229 and 250);
-    where a motion grazes, or runs nearby go through other events, there is none (187, 200, 251,
-    279).
+    """Of the first 300 seeds of the campaign nine fail. Where surfaces strike in turns, slip turns
+    round in an impact or ends often, some differ more (25, 113, 122 and 250), and where Euler's
+    angles are read near a pole (69); where slip is about to end for long, or runs nearby go through
+    other events, there is none (187, 200; 251, 279).
     """
     case = random_case(seed)
     if case is None:
@@ -323,6 +323,16 @@ def test_random_problems_agree_with_differences(seed):
             off / largest,
             error / largest,
         )
+
+
+@pytest.mark.slow
+def test_slip_that_is_about_to_end_for_long_is_the_reason_for_no_derivatives():
+    """A patch creeps, and the time left to the end of slip hardly changes for a while."""
+    problem, duration, field = random_case(200)
+    slopes = tt.sensitivities(problem, duration, [field], samples=3)
+    assert slopes["reason"].item().startswith("slip, or rolling, is about to end for long")
+    assert np.isfinite(slopes["tilt"].values[0, :2]).all()
+    assert np.isnan(slopes["tilt"].values[0, 2])
 
 
 def test_motion_that_ends_where_it_begins_keeps_its_derivatives():

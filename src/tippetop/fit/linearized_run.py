@@ -20,7 +20,7 @@ import xarray as xr
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.block import Block
 from tippetop.contact.contact_mode import ContactMode
-from tippetop.contact.guards import ENDING
+from tippetop.contact.guards import ENDING, ROLLING_STOPPING, STOPPING
 from tippetop.contact.mode import (
     COMPLETED,
     FAILURE,
@@ -68,9 +68,10 @@ TRIES, SHORTER = 3, 0.1
 beside it go through the same events.
 """
 
-GRAZING = 1e-9
-"""Sine of the angle between the motion and the surface where a guard is zero, below which the time
-at which it falls has no derivative.
+GRAZING = 1e-8
+"""Rate of a guard where it falls, over the sum of the sizes of its parts, one of each number of the
+motion, below which its time has no derivative: the parts cancel, and rounding leaves few digits of
+what is divided by that rate.
 """
 
 SLIP_LEFT = 1e-5
@@ -87,6 +88,10 @@ OTHER_EVENTS = (
     " of sticking"
 )
 GRAZES = "the motion grazes: the guard that ends it hardly falls"
+LINGERS = (
+    "slip, or rolling, is about to end for long before it does, or does not: few digits of the"
+    " derivatives that follow are known"
+)
 UNSOLVED = "the variational equations cannot be followed"
 AT_BOUND = (
     "contact.restitution is at the end of its range, from 0 to 1: there is no run on the other side"
@@ -463,11 +468,12 @@ class LinearizedRun:
         changes, gradient = np.split(parts_of(guard.value(y, p), count + size), [count])
         slope, steepest = float(gradient @ slopes), float(np.linalg.norm(gradient))
         times = np.zeros(count)
-        if abs(slope) > GRAZING * steepest * np.linalg.norm(slopes):
+        if abs(slope) > GRAZING * float(np.abs(gradient) @ np.abs(slopes)):
             times = -changes / slope
         else:
+            lingers = visit.end is not None and visit.end.cause in (STOPPING, ROLLING_STOPPING)
             for direction in range(count):
-                self.fail(direction, visit.end_time, GRAZES)
+                self.fail(direction, visit.end_time, LINGERS if lingers else GRAZES)
         return (guard, gradient / steepest**2), times
 
     def _end_rate(self, direction: StartNumbers) -> float:
