@@ -32,9 +32,9 @@ derivative of a phase of a thousand radians changes them by 1e-3, rounding of ru
 ROUNDED = 1e-12
 """Change of the values over that step, relative to them, below which it is rounding of runs."""
 
-SECANT, SECANT_RUNS = 0.03, 8
+SECANT, SECANT_RUNS, SECANT_RUNS_OF_SEARCH = 0.03, 8, 4
 """How far beside a problem, relative to the scale of a field, the times of its events are compared,
-and in how many runs.
+and in how many runs: of these the errors follow. A search needs the slope alone, and fewer.
 
 A time of an event moves in steps where the event waits for the next swing of a nutation; a step is
 some thousandths of a field wide. Over less than a few steps the slope is that of a step, over much
@@ -201,10 +201,11 @@ class Model:
             columns.append(column if has_effect else np.zeros_like(column))
         slopes = np.stack(columns, axis=1)
         if self.is_event.any():
-            slopes[self.is_event] = self.secants(numbers)[0][self.is_event]
+            secants, _ = self.secants(numbers, SECANT_RUNS_OF_SEARCH)
+            slopes[self.is_event] = secants[self.is_event]
         return center, slopes
 
-    def secants(self, numbers: Array) -> tuple[Array, Array]:
+    def secants(self, numbers: Array, runs: int = SECANT_RUNS) -> tuple[Array, Array]:
         """Return how the values move over a finite change of each field, and in which steps.
 
         Returns
@@ -215,7 +216,7 @@ class Model:
             height 1 from its mean, sqrt(12).
         """
         slopes, heights = np.zeros((len(self.data), len(numbers))), np.zeros(len(self.data))
-        places = np.linspace(-1.0, 1.0, SECANT_RUNS)
+        places = np.linspace(-1.0, 1.0, runs)
         for field, scale in enumerate(self.scales(numbers)[: len(self.fields)]):
             rows, seen = list[Array](), list[float]()
             for place in places:
