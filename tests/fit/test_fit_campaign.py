@@ -8,9 +8,9 @@ import pytest
 
 import tippetop as tt
 from campaigns import seed_ranges
+from made_data import NOISES, rising_law
 
-KINDS = ("tilt", "tip from the side", "tip from above", "turns a minute", "stopwatch")
-NOISES = {"tilt": np.radians(1.0), "turns a minute": 10.0, "stopwatch": 0.1}
+KINDS = ("tilt", "tip from the side", "tip from above", "turns a minute", "time of turning over")
 TIP = 0.026
 """Height of the report's top above its centre of mass, m."""
 PIXEL, BLUR = 2e-4, 1.5
@@ -58,22 +58,15 @@ class Verdict(NamedTuple):
     runs: int
 
 
-def law_of(seed, mu):
-    """Return one of three laws that let the top rise."""
-    return (
-        tt.ViscousFriction(mu=mu),
-        tt.RegularizedCoulombFriction(mu=mu, eps=0.1),
-        tt.ContensouFriction(mu=mu, patch_radius=1e-3),
-    )[seed // len(KINDS) % 3]
-
-
 def case_of(seed):
     """Return data of known truth, and the generator that made them."""
     random, kind = np.random.default_rng(seed), KINDS[seed % len(KINDS)]
     spin, mu = float(random.uniform(100.0, 160.0)), float(random.uniform(0.2, 0.4))
-    true = tt.presets.report_problem(spin=spin).replace({"friction": law_of(seed, mu)})
+    true = tt.presets.report_problem(spin=spin).replace(
+        {"friction": rising_law(seed // len(KINDS), mu)}
+    )
     is_stated = bool(random.random() < 0.5)
-    if kind == "stopwatch":
+    if kind == "time of turning over":
         return Case(kind, timed(true, is_stated, random), ["friction.mu"]), random
     film = filmed(kind, true, is_stated, random)
     return Case(kind, [(true, film)], ["friction.mu", "launch.spin"]), random
@@ -81,7 +74,7 @@ def case_of(seed):
 
 def timed(true, is_stated, random):
     """Return launches of several spins, and when each has turned over."""
-    pairs, noise = list[tuple[tt.Problem, tt.Measurement]](), NOISES["stopwatch"]
+    pairs, noise = list[tuple[tt.Problem, tt.Measurement]](), NOISES["time of turning over"]
     while len(pairs) < LAUNCHES:
         launch = true.replace({"launch.spin": float(random.uniform(100.0, 160.0))})
         turned = float(tt.simulate(launch, LONGEST, samples=2)["turnover_time"])

@@ -134,7 +134,7 @@ def plan_measurement(
             raise InvalidInput(f"noise.{quantity}", deviation, "a number greater than 0")
     fields = require_names("vary", vary)
     seconds = float(number_in("duration", duration, "s"))
-    measurements = _planned(problem, seconds, deviations)
+    measurements = planned_measurements(problem, seconds, deviations)
     model = Model(problem, list(measurements.values()), fields)
     numbers = model.start
     jacobian = model.jacobian(numbers) * model.scales(numbers)
@@ -176,6 +176,8 @@ def plan_measurement(
         best = min(reached, key=lambda quantity: reached[quantity])
         shown = f"{reached[best]:.2g} by {best}" if np.isfinite(reached[best]) else "nothing"
         fault = f"is not reached by any of these quantities in {seconds:.3g} s: {shown} at best"
+        if reached[best] <= accuracy:
+            fault += ", which fits of made data do not confirm"
         hint = "film longer, fit fewer numbers, or read them more accurately"
         raise InvalidInput("accuracy", accuracy, "", fault, hint)
     return sorted(plans, key=_pictures)
@@ -213,7 +215,7 @@ def _confirmed(
     return plan._replace(error=error / abs(truth))
 
 
-def _planned(
+def planned_measurements(
     problem: Problem, duration: float, deviations: Mapping[str, float]
 ) -> dict[str, Measurement]:
     """Return measurements that show the run of the problem itself."""
