@@ -1,6 +1,7 @@
 """The engine in the page computes the same numbers as Python, and what its motions must keep."""
 
 import json
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -423,3 +424,23 @@ def test_slip_that_has_all_but_ended_where_it_jams_sticks_in_the_page() -> None:
     }
     (found,) = in_javascript([asked | {"mode_limit": 300}])
     assert found["status"]["name"] == "completed"
+
+
+def test_the_least_force_is_that_before_it_jumps_where_the_curvature_changes() -> None:
+    # The body rolls from its edge onto its ball: the force jumps, within a step of the page.
+    height, radius = -3.0, math.sqrt(20.0**2 - 3.0**2)
+    profile = [(0, -20), (radius, height, 20), (radius - 2, height + 2, 2), (0, height + 7)]
+    body = tt.Body.turned(tt.Workpiece(profile=profile, unit="mm", density=700))
+    assert body.shapes[0].kind == "meridian"
+    launch = tt.Launch(tilt=1.510903011163761, spin=16.5752934464801)
+    problem = tt.Problem(body=body, friction=tt.CoulombFriction(mu=0.2), launch=launch)
+    question = {
+        "problem": problem.model_dump(mode="json"),
+        "duration": 0.3,
+        "pushes": [],
+        "tolerance": TOLERANCE,
+        "times": [0.0],
+    }
+    (found,) = in_javascript([question])
+    expected = float(tt.simulate(problem, 0.3)["min_normal_force"])
+    assert found["metrics"]["min_normal_force"] == pytest.approx(expected, rel=1e-6)

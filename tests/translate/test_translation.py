@@ -121,7 +121,9 @@ def tuples():
 def records():
     here = Louder("a", Point(1.0), volume=4.0)
     there = replace(here, name="b")
-    return [there.told(), there.told(twice=True), there.loud, there == replace(here, name="b"),
+    told = {"first": Base.told, "second": lambda one: one.name}
+    return [there.told(), there.told(twice=True), told["first"](there), there.loud,
+            there == replace(here, name="b"),
             there == here,
             list(there.parts(2)), there.place.y, isinstance(there, Base), here.volume]
 

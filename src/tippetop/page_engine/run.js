@@ -15,6 +15,11 @@ const BETWEEN_PROBES = 0.1;
 // The same of the normal force between and beyond the nodes of Gauss's rule, which are fewer.
 const BETWEEN_NODES = 0.5;
 
+// How far a polynomial may be from the normal force, in weights, where that is smooth: a jump is 100 times as much.
+const SMOOTH_FORCE = 1e-6;
+// The part of a step at whose ends the force is not read.
+const NEAR_END = 1e-6;
+
 // The most digits of a metric for people.
 const MOST_DIGITS = 4;
 // The status of a mode whose contact sticks.
@@ -630,12 +635,20 @@ class SegmentReader {
   }
 
   /**
-   * The normal force in a step, as a polynomial of the part that has passed. The force is not read at the very
-   * ends: where slip is zero but for rounding, the direction of friction is undefined.
+   * The normal force in a step, as a function of the part that has passed: a polynomial, or, where it jumps because the
+   * contact passes to a part of a surface with another curvature, the force itself. That is not read at the very ends:
+   * where slip is zero but for rounding, the direction of friction is undefined.
    */
   force(step) {
-    const force = (part) => [this.ratesAt(step, part, 1)[FORCE]];
-    return reading(DenseSolution.fitted(force, [0, 1], FORCE_DEGREE), 0, 0);
+    const force = (part) => this.ratesAt(step, part, 1)[FORCE];
+    const fitted = reading(
+      DenseSolution.fitted((part) => [force(part)], [0, 1], FORCE_DEGREE),
+      0,
+      0,
+    );
+    const inner = PROBES.slice(1, -1);
+    if (inner.every((part) => Math.abs(fitted(part) - force(part)) <= SMOOTH_FORCE)) return fitted;
+    return (part) => force(Math.min(Math.max(part, NEAR_END), 1 - NEAR_END));
   }
 
   /** `Instants` at a part of a step. */

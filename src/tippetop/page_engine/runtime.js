@@ -576,8 +576,10 @@ export function getattr(one, name, ...otherwise) {
   if (!otherwise.length && typeof one !== "function") throw new TypeError(`it has no ${name}`);
   return typeof one === "function" && name in one ? one[name] : otherwise[0];
 }
-/** A field, or a method with the object or class it belongs to. */
+/** A field, or a method with the object or class it belongs to; of a class a method that takes the object first. */
 export function member(one, name) {
+  if (typeof one === "function" && !(name in one))
+    return (self, ...others) => one.prototype[name].apply(self, others);
   const value = one[name];
   return typeof value === "function" && isMethod(one, name) ? value.bind(one) : value;
 }
