@@ -104,6 +104,12 @@ def test_a_problem_is_told_from_a_workpiece(tmp_path):
     assert told.startswith("tippetop: top.toml is a problem, and not a workpiece in TOML")
 
 
+def test_a_profile_is_told_from_a_problem(tmp_path):
+    told = misused(tmp_path, "simulate", "top.csv")
+    assert told.startswith("tippetop: problem: 'top.csv' is not a problem in TOML or JSON")
+    assert "tippetop body" in told
+
+
 def test_a_parameter_of_a_distribution_stands_once(tmp_path):
     draw = "launch.spin=norm:loc=150:loc=100:scale=5"
     told = misused(tmp_path, "sweep", "--draw", draw, "--count", "3")

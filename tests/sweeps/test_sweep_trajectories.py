@@ -123,6 +123,21 @@ def test_events_up_to_a_bound_are_those_of_single_runs(tmp_path):
     assert min(counts) < 4 < max(counts)
 
 
+def test_events_are_a_table_of_their_own():
+    problem, spins = report_problem(tilt=0.3), {"launch.spin": [5.0, 175.0]}
+    options = {"duration": 6.0, "samples": 3, "most_events": 50, "workers": 1}
+    found = tt.sweep(problem, spins, keep=["events", "tilt"], **options)
+    events = tt.to_dataframe(found, "events")
+    assert len(events) == min(50, int(found["event_count"].max())) > 0
+    assert next(iter(events)) == "spin"
+    assert set(events["event_kind"]) <= {"liftoff", "touchdown", "impact"}
+    launches = tt.to_dataframe(found)
+    assert len(launches) == 6
+    assert "event_time" not in launches
+    with pytest.raises(InvalidInput, match='None for a sweep, or "events"'):
+        tt.to_dataframe(found, "flights")
+
+
 def test_sweeps_that_keep_come_back_from_their_description():
     kept = {"keep": ("tilt", "events"), "samples": 7, "most_events": 3}
     sweep = with_samples(lively("fly", 2, 1, 0.1, 1e-9), **kept)

@@ -90,6 +90,10 @@ Keep = Annotated[
 Samples = Annotated[
     int | None, number_option(int, "Number of samples that are kept of a run; 201 by default.")
 ]
+MostEvents = Annotated[
+    int | None,
+    number_option(int, "Number of events that --keep events keeps of a run; 20 by default."),
+]
 Processes = Annotated[
     int | None, number_option(int, "Number of processes; by default all processors.")
 ]
@@ -116,6 +120,7 @@ def sweep(
     settled: Settled = None,
     keep: Keep = None,
     samples: Samples = None,
+    most_events: MostEvents = None,
     workers: Processes = None,
     scheduler: Scheduler = None,
     out: Out = Path("sweep.zarr"),
@@ -144,6 +149,7 @@ def sweep(
         "settled": number_of("--settled", settled, "rad"),
         "keep": keep,
         "samples": samples,
+        "most_events": most_events,
     }
     fields = _chosen_fields(choice, stored, _chosen_grid(over, draw, count, seed), limits)
     chosen = Sweep(**fields)

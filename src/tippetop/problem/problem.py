@@ -60,6 +60,9 @@ from tippetop.support.validation import (
     kinds_with,
 )
 
+PROFILES = (".csv", ".svg", ".dxf", ".stl", ".obj", ".ply", ".off")
+"""Suffixes of files with the profile of a body, which are no problems."""
+
 EXTREME = 1e100
 """Number, and its inverse, beyond which an overflow is blamed on a number of the problem and not
 on its friction law: numbers less extreme overflow in the fourth power only.
@@ -344,6 +347,9 @@ def fields_in(path: Path | str) -> dict[str, Any]:
 
     Raises `FileTrouble` if the file cannot be read, and `InvalidInput` if it is not TOML or JSON.
     """
+    if Path(path).suffix.lower() in PROFILES:
+        accepted = "a problem in TOML or JSON, which tippetop body makes of a profile with --toml"
+        raise InvalidInput("problem", str(path), accepted)
     text = read_text(path, "a problem in TOML or JSON")
     parse = parse_json if Path(path).suffix.lower() == ".json" else parse_toml
     return parse(text, "problem", Path(path).name)

@@ -24,7 +24,8 @@ def to_dataframe(result: xr.Dataset, table: str | None = None) -> pd.DataFrame:
     result
         A run as `simulate` returns it, or a sweep as `sweep` does.
     table
-        Table of a run: "samples", the default, "events" or "flights". A sweep has one table.
+        Table of a run: "samples", the default, "events" or "flights". A sweep has one table, and
+        "events" where they are kept.
 
     Returns
     -------
@@ -52,9 +53,11 @@ def to_dataframe(result: xr.Dataset, table: str | None = None) -> pd.DataFrame:
     True
     """
     if is_sweep(result):
-        if table is not None:
-            raise InvalidInput("table", table, "None for a sweep, which has one table")
-        columns, units = _cells(result)
+        has_events = "event" in result.dims
+        if table is not None and not (has_events and table == "events"):
+            also = ', or "events"' if has_events else ", which has one table"
+            raise InvalidInput("table", table, f"None for a sweep{also}")
+        columns, units = _events(result) if table else _cells(result)
     else:
         require_run(result)
         if table is not None and table not in TABLES:
@@ -90,7 +93,18 @@ def _list(run: xr.Dataset, table: str) -> tuple[pd.DataFrame, dict[str, str]]:
     return pd.DataFrame(columns), units
 
 
-def _cells(sweep: xr.Dataset) -> tuple[pd.DataFrame, dict[str, str]]:
+def _events(sweep: xr.Dataset) -> tuple[pd.DataFrame, dict[str, str]]:
+    """Return one row an event that is kept of a launch, with the values of the launch's fields."""
+    names = [name for name in sweep.data_vars if "event" in sweep[name].dims]
+    columns, units = _cells(sweep[names].drop_vars("time", errors="ignore"), ())
+    return columns[columns["event_time"].notna()].reset_index(drop=True), units
+
+
+def _cells(
+    sweep: xr.Dataset, omitted: Sequence[str] = ("event",)
+) -> tuple[pd.DataFrame, dict[str, str]]:
+    """Return one row a launch, or a sample of it, without variables over the omitted dimensions."""
+    sweep = sweep.drop_dims(omitted, errors="ignore")
     # A single cell has no dimension, and pandas makes no table of it.
     cells = decoded(sweep if sweep.sizes else sweep.expand_dims("cell"))
     table = cells.to_dataframe().reset_index()

@@ -303,7 +303,7 @@ def sweep(
     for field, functions in {"events": events, "until": until}.items():
         if functions is not None:
             fault = "is not followed in sweeps"
-            hint = "follow the launches one by one with simulate"
+            hint = 'keep=["events"] keeps impacts and the like; simulate follows one launch'
             raise InvalidInput(field, functions, "", fault, hint)
     for field, asked in {"overwrite": overwrite, "resume": resume}.items():
         require(field, asked, bool, "True or False")
