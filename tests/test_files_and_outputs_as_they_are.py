@@ -110,6 +110,30 @@ def test_a_profile_is_told_from_a_problem(tmp_path):
     assert "tippetop body" in told
 
 
+@pytest.mark.parametrize("words", ["--spin 2200 rpm", "top.toml --spin 2200 rpm"])
+def test_a_unit_without_quotes_is_no_file(tmp_path, words):
+    PROBLEM.write(tmp_path / "top.toml")
+    told = misused(tmp_path, "simulate", *words.split())
+    assert "rpm is a unit" in told.replace("'rpm'", "rpm")
+    assert "in quotes, as in '2200 rpm'" in told
+    assert "no such file" in misused(tmp_path, "simulate", "xyzzy").lower()
+
+
+def test_a_surface_has_no_thresholds_where_another_touches(tmp_path):
+    """The spins on an edge or a stem are not those of a cut ball below them."""
+    (tmp_path / "top.csv").write_text(
+        "r (mm),z (mm),arc\n0,-15\n12,9,15\n2.5,9\n2.5,18\n0,20.5,2.5\n"
+    )
+    body = tt.Body.turned(tt.read_workpiece(tmp_path / "top.csv", density="beech"))
+    PROBLEM.replace({"body": body}).write(tmp_path / "top.toml")
+    command = [sys.executable, "-m", "tippetop", "critical", "top.toml"]
+    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, check=True, timeout=120)
+    said = ended.stdout.decode()
+    assert "upright changes at" in said
+    assert "inverted changes at" not in said
+    assert "e+" not in said
+
+
 def test_a_parameter_of_a_distribution_stands_once(tmp_path):
     draw = "launch.spin=norm:loc=150:loc=100:scale=5"
     told = misused(tmp_path, "sweep", "--draw", draw, "--count", "3")

@@ -1,6 +1,7 @@
 """All commands, and the report of errors as one sentence with an exit code."""
 
 import os
+import re
 import sys
 import warnings
 from typing import Annotated, Any, TextIO
@@ -31,6 +32,10 @@ from tippetop.support.errors import (
     within_part,
 )
 from tippetop.support.interrupts import INTERRUPTED, is_interrupted, let_end, let_raise
+from tippetop.support.units import is_unit
+
+UNEXPECTED = re.compile(r"unexpected extra argument(?:s|\(s\))? \((\S+)\)")
+"""What typer says of an argument that a command does not take."""
 
 MISUSE = 2
 """Exit code of a command line that is not accepted."""
@@ -76,6 +81,10 @@ def _in_a_sentence(error: Any) -> Exception:
     if isinstance(cause, InvalidInput):
         return within_part(cause, error.param.opts[0])
     message: str = error.format_message()
+    extra = UNEXPECTED.search(message)
+    if extra and is_unit(extra[1]):
+        hint = f"write a number and its unit in quotes, as in '2200 {extra[1]}'"
+        return TippetopError(f"{extra[1]} is a unit, and no argument ({hint})")
     if message:
         return TippetopError(message[0].lower() + message[1:].removesuffix("."))
     help_text: Exception = error

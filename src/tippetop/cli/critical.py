@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from itertools import compress
 from typing import TYPE_CHECKING, Any
 
 from tippetop.cli.options import Choice, Json, of_a_problem
@@ -198,13 +199,17 @@ def _critical_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
     names = ("upright spin unstable above ω_c1", "inverted spin stable above ω_c2")
     if not sphere:
         names = ("upright changes at", "inverted changes at")
-    return [
+    spins = [
         _threshold(names[0], upright, "rad/s"),
         _threshold(names[1], inverted, "rad/s"),
+    ]
+    integrals = [
         _threshold("λ_up", outlook.jellett_upright, "kg m³/s"),
         _threshold("λ_down", outlook.jellett_inverted, "kg m³/s"),
-        jellett,
     ]
+    # A sphere goes on beyond the tilts at which another surface touches; other surfaces may not.
+    on_surface = [sphere or outlook.tilts[0] == 0.0, sphere or outlook.tilts[1] == math.pi]
+    return [*compress(spins, on_surface), *compress(integrals, on_surface), jellett]
 
 
 def _threshold(name: str, value: float, unit: str) -> tuple[str, str, str]:

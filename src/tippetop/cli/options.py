@@ -13,7 +13,7 @@ import tippetop as tt
 from tippetop.problem.problem import fields_in
 from tippetop.support.errors import MISSING, InvalidInput, is_number, short
 from tippetop.support.files import made_of, written_beside
-from tippetop.support.units import number_hint, number_in
+from tippetop.support.units import is_unit, number_hint, number_in
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -140,6 +140,10 @@ def _problem_in(file: Path | None, stated: Mapping[str, Any], keyframe: str | No
     """
     if file is None:
         return tt.presets.report_problem()
+    if not (file.suffix or file.exists()) and is_unit(str(file)):
+        fault = "is a unit, and no file"
+        hint = f"write a number and its unit in quotes, as in '2200 {file}'"
+        raise InvalidInput("file", str(file), "", fault, hint)
     if file.suffix.lower() == MJCF_ENDING:
         return tt.read_mjcf(file, keyframe)
     try:

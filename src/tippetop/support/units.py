@@ -338,6 +338,11 @@ def _number_and_unit(text: str, units: str) -> tuple[float, str]:
     return float(match[1]), match[2]
 
 
+def is_unit(text: str) -> bool:
+    """Return whether a word is a unit that the package knows, such as rpm or rad/s."""
+    return named_unit(text) is not None
+
+
 def begins_a_unit(text: str) -> bool:
     """Return whether what follows a number may be a unit; "1/s" may, other digits may not."""
     if re.match(r"1\s*/", text):
