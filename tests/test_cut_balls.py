@@ -184,3 +184,30 @@ def test_arcs_of_drawings_have_the_support_function_of_the_profile():
             deepest = float((points.real * s - (points.imag - center) * c).max())
             height = max(shape.surface.height(c) for shape in body.shapes)
             assert height == pytest.approx(deepest, abs=2e-9), (profile, tilt)
+
+
+@pytest.mark.parametrize("friction", [tt.CoulombFriction(mu=0.3), tt.ViscousFriction(mu=0.3)])
+def test_a_run_ends_where_a_cut_ball_would_lie_on_its_cut(friction):
+    problem = of(BALL, friction=friction, tilt=3.0, spin=0.0, tilt_rate=2.0)
+    run = tt.simulate(problem, 1.0)
+    assert run.attrs["status"] == "failed"
+    assert "flat end of a surface of arcs" in run.attrs["message"]
+    assert float(run["final_tilt"]) == pytest.approx(math.pi - 1e-4, abs=1e-7)
+
+
+def test_a_cut_ball_is_not_launched_lying_on_its_cut():
+    with pytest.raises(tt.InvalidInput, match="flat end of a surface of arcs") as refusal:
+        of(BALL, tilt=math.pi, spin=10.0)
+    assert refusal.value.field == "launch.tilt"
+    of(BALL, tilt=0.0, spin=10.0)
+    of(BALL, STEM, tilt=math.pi, spin=10.0)
+
+
+def test_the_end_of_a_cut_ball_is_that_of_the_ball_if_it_stays_on_it():
+    launch = {"tilt": 0.1, "spin": 20.0}
+    ball = tt.Sphere(radius=RADIUS, center=CENTER)
+    assert tt.predict(of(BALL, **launch)) == tt.predict(of(ball, **launch))
+    with pytest.raises(tt.InvalidInput, match=r"leaves its sphere at a tilt of 1\.7 rad"):
+        tt.predict(of(BALL, tilt=0.1, spin=300.0))
+    with pytest.raises(tt.InvalidInput, match="an eccentric sphere"):
+        tt.predict(of(BALL, tilt=2.0, spin=20.0))

@@ -28,6 +28,7 @@ from tippetop.problem.frictions import (
     ContensouFriction,
     CoulombFriction,
     RegularizedCoulombFriction,
+    StaticCoulombFriction,
     ViscousFriction,
 )
 from tippetop.problem.launch import Launch
@@ -71,6 +72,7 @@ PARTS = [
     Meridian,
     Oval,
     Spheroid,
+    StaticCoulombFriction,
     ViscousFriction,
 ]
 

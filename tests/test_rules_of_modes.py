@@ -16,6 +16,7 @@ from tippetop.mechanics.laws.coulomb import CoulombLaw
 from tippetop.mechanics.laws.face_friction import UniformDiskLaw
 from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.surface import MeridianSurface
 from tippetop.mechanics.top import Top
 
 NO_GUARDS = {COMPLETED, FAILURE, FLAT, STOPPED, TILTED, AT_REST, ENDED, ONSET_OVER}
@@ -34,7 +35,9 @@ def test_the_rules_are_those_of_the_causes_that_modes_have() -> None:
     nearly_stuck = ContactMode(Top.of(1.0, 0.45, 0.38, ball, dry, 1.0), near=True)
     on_ring = Top.of(1.0, 0.45, 0.38, SURFACES["ring"], dry, 1.0)
     on_face = FaceMode(on_ring, UniformDiskLaw)
-    modes = [*(Flight(top) for top in tops), nearly_stuck, on_face]
+    cut = MeridianSurface(0.0, 0.2, (1.0, 0.0), (-0.1,), (True, False))
+    on_cut_ball = ContactMode(Top.of(1.0, 0.45, 0.38, cut, ViscousLaw(0.3), 1.0))
+    modes = [*(Flight(top) for top in tops), nearly_stuck, on_face, on_cut_ball]
     motions = [*(case.motion for case in CASES), *(mode.motion for mode in modes)]
     named = set().union(*(causes(motion) for motion in motions))
     # The clock of a velocity that ends stops with the run, whose end the mode reports, and a stage

@@ -53,7 +53,7 @@ from tippetop.contact.slip_end_motion import (
 )
 from tippetop.contact.slip_onset import ENDED, ONSET_OVER, UNSEEN, SlipOnset
 from tippetop.contact.soonest_end import on_present_branch, rolls_freely, soonest_end
-from tippetop.contact.surfaces import FACE, TOUCH, WOBBLE, lands_flat, lies_flat
+from tippetop.contact.surfaces import FACE, FLAT_END, TOUCH, WOBBLE, lands_flat, lies_flat
 from tippetop.contact.tip_onset import BARELY_TILTED, TILTED, TipOnset
 from tippetop.contact.touching import (
     SLOWEST_ROCKING,
@@ -113,6 +113,11 @@ REST = 1e-13
 
 MOST_IN_TURNS = 200
 """Impacts at one instant, now of one surface and now of another, after which a run is given up."""
+
+ON_FLAT_END = (
+    "The body comes to lie on the flat end of a surface of arcs, on which no motion is simulated."
+)
+"""Detail of the status of a run that ends there."""
 
 
 @dataclass(frozen=True)
@@ -1016,6 +1021,7 @@ RULES: dict[str, Rule] = {
     ),
     FACE: lambda rules, mode, end, time: rules._settle_flat(mode, end, slaps=True),
     WOBBLE: lambda rules, mode, end, time: rules._settle_flat(mode, end, slaps=False),
+    FLAT_END: lambda rules, mode, end, time: Transition((), Status.FAILED, end.state, ON_FLAT_END),
     LIFT_OFF: lambda rules, mode, end, time: rules.lift_off(
         off_branch(contact_mode_of(mode, end).top), time, mode, end
     ),

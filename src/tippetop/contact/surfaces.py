@@ -7,12 +7,12 @@ from typing import Any, TypeAlias
 
 from tippetop.contact.mode import numbered
 from tippetop.mechanics.lying_down import slap_guard
-from tippetop.mechanics.surfaces.hull import acting, each_surface, is_edge
+from tippetop.mechanics.surfaces.hull import acting, each_surface, has_flat_end, is_edge
 from tippetop.mechanics.surfaces.surface import NEARLY_FLAT, gap_guard, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar, Vector
 
-FACE, WOBBLE, TOUCH = "face", "wobble", "touch"
+FACE, WOBBLE, TOUCH, FLAT_END = "face", "wobble", "touch", "flat end"
 
 MARGIN = 1e-15
 """Gap, in sizes, below zero at which a surface touches: one that just let go is there by rounding.
@@ -30,8 +30,16 @@ def surface_guards(top: Top) -> list[tuple[str, SurfaceGuard]]:
     guards: list[tuple[str, SurfaceGuard]] = []
     if is_edge(top.surface):
         guards.append((FACE, lambda top, axis, momentum: slap_guard(axis, momentum, top)))
+    if has_flat_end(top.surface):
+        guards.append((FLAT_END, _end_guard))
     open_ones = [number for number in range(len(each_surface(top.surface))) if number != top.number]
     return guards + [(numbered(TOUCH, number), _gap_of(number)) for number in open_ones]
+
+
+def _end_guard(top: Top, axis: Vector, _: Vector) -> Scalar:
+    """Return what falls through zero as the body comes to lie on a flat end of arcs."""
+    arcs: Any = acting(top.surface)
+    return arcs.end_guard(axis)
 
 
 def lies_flat(top: Top, axis: Vector) -> Scalar:

@@ -126,7 +126,9 @@ class Air(Part):
         ----------
         body
             The body. One with an edge counts as a thin disk, any other as a sphere, of the radius R
-            of its largest circle about the axis.
+            of the largest circle about the axis on which it can touch the table. Nothing else of
+            its shape counts: of a tall body the air beside its side is left out, and so are stems,
+            grooves and the table, which slows the air under the body.
         spin
             Angular velocity, rad/s, at which the torques and their slopes are met.
         density, viscosity

@@ -25,7 +25,14 @@ from tippetop.mechanics.motion import (
     sliding_contact,
 )
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.hull import Hull, is_edge, sizes
+from tippetop.mechanics.surfaces.hull import (
+    Hull,
+    acting,
+    each_surface,
+    has_flat_end,
+    is_edge,
+    sizes,
+)
 from tippetop.mechanics.top import Top, natural_state, natural_units
 from tippetop.mechanics.vectors import Functions, Vector
 from tippetop.mechanics.view import Angles, PoleExact, state_from_angles
@@ -118,6 +125,7 @@ class Problem(Part):
     @model_validator(mode="after")
     def _contact_is_possible(self) -> Self:
         _require_fitting_patch(self)
+        _require_face(self)
         _require_finite_friction(self)
         if not (math.isfinite(_resistance(self)) and math.isfinite(_largest_square(self))):
             raise _overflow_refusal(self)
@@ -391,6 +399,21 @@ FULL_NAMES = declare_places(Problem)
 def require_problem(problem: object) -> None:
     """Raise `InvalidInput` unless a value is a problem."""
     require("problem", problem, Problem, "a Problem, such as presets.report_problem() makes")
+
+
+def _require_face(problem: Problem) -> None:
+    """Raise `InvalidInput` for a body that lies on the flat end of a surface of arcs."""
+    if problem.launch.gap > 0.0 or not any(map(has_flat_end, each_surface(problem.body.surface))):
+        return
+    surface = problem.standing().surface
+    arcs: Any = acting(surface)
+    if has_flat_end(surface) and arcs.end_guard(problem.start().axis) <= 0.0:
+        raise InvalidInput(
+            "launch.tilt",
+            problem.launch.tilt,
+            "a tilt at which the body stands on an edge",
+            "lays it on the flat end of a surface of arcs, on which no motion is simulated",
+        )
 
 
 def _require_fitting_patch(problem: Problem) -> None:

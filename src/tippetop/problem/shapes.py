@@ -176,7 +176,9 @@ class Meridian(Shape):
     """Convex surface whose meridian is arcs that continue each other: a ball that is cut off.
 
     From tilt 0 on the body stands on each arc up to a tilt, from which on it stands on the next
-    one. An arc of radius 0 is a sharp edge, such as that of a cut.
+    one. An arc of radius 0 is a sharp edge, such as that of a cut. An end that is no sphere is
+    flat, but no face as that of a `Ring`: a run in which the body comes to lie on it ends as
+    "failed".
 
     Attributes
     ----------

@@ -19,10 +19,12 @@ from numpy.typing import NDArray
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.surface import MeridianSurface
 from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.view import axis_sine
 from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem, top_of
+from tippetop.problem.shapes import Sphere
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.theory.requirements import require_creep, require_jellett
 from tippetop.theory.series_roots import roots_between
@@ -75,9 +77,10 @@ class Prediction:
 def predict(problem: Problem) -> Prediction:
     """Return the steady states that a launch of an eccentric sphere can end in.
 
-    A body of several surfaces must be launched on a sphere, with too little energy for the others
-    to touch. A launch exactly in an unstable steady state, such as one at tilt 0 without a
-    perturbation, stays there; the prediction is that of a slightly perturbed one.
+    A body of several surfaces, or of arcs that continue each other, must be launched on a sphere,
+    with too little energy for the others to touch. A launch exactly in an unstable steady state,
+    such as one at tilt 0 without a perturbation, stays there; the prediction is that of a slightly
+    perturbed one.
 
     Raises
     ------
@@ -102,6 +105,8 @@ def predicted(problem: Problem) -> Prediction:
     top = top_of(problem)
     if isinstance(top.surface, Hull):
         return _prediction_of_several_surfaces(problem, hull_of(problem))
+    if isinstance(top.surface, MeridianSurface):
+        return _prediction_on_arc(problem, top.surface)
     require_jellett(top)
     require_creep(top)
     if problem.friction.vanishes:
@@ -140,6 +145,41 @@ def _prediction_of_several_surfaces(problem: Problem, hull: Hull) -> Prediction:
     low, high = single_contact_tilts(hull, problem.launch.tilt)
     stable = tuple(state for state in prediction.stable if low <= state.tilt <= high)
     return replace(prediction, stable=stable, surface=hull.active)
+
+
+def _prediction_on_arc(problem: Problem, surface: MeridianSurface) -> Prediction:
+    """Return the end on the arc of the launch, if that is of a sphere and its energy excludes
+    contact of the arcs beside it; else raise `InvalidInput`.
+    """
+    cosine, number = math.cos(problem.launch.tilt), 0
+    while number < len(surface.cosines) and cosine <= surface.cosines[number]:
+        number += 1
+    arc = surface.arcs[number]
+    if not arc.is_sphere:
+        require_jellett(top_of(problem))
+    ball = Sphere(radius=float(arc.tube), center=float(arc.center))
+    body = problem.body.model_copy(update={"shape": ball})
+    single = problem.model_copy(update={"body": body})
+    prediction, top = predicted(single), top_of(single)
+    low, high = 0.0, math.pi
+    if number > 0:
+        low = math.acos(surface.cosines[number - 1])
+    if number < len(surface.cosines):
+        high = math.acos(surface.cosines[number])
+    available = float(energy(single.start(), top))
+    for tilt in (low, high):
+        if tilt in (0.0, math.pi):
+            continue
+        needed = float(least_energy(tilt, prediction.jellett, top, math))
+        if needed <= available:
+            raise InvalidInput(
+                "body.shape",
+                Described(f"one that leaves its sphere at a tilt of {tilt:.4g} rad"),
+                f"a launch with less energy than the {needed:.4g} J for that: this one has"
+                f" {available:.4g} J, and no theory says how it goes on",
+            )
+    stable = tuple(state for state in prediction.stable if low <= state.tilt <= high)
+    return replace(prediction, stable=stable)
 
 
 def hull_of(problem: Problem) -> Hull:

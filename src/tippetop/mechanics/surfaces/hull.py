@@ -156,6 +156,11 @@ def is_edge(surface: Surface) -> bool:
     return hasattr(acting(surface), "lies_flat")
 
 
+def has_flat_end(surface: Surface) -> bool:
+    """Return whether a surface, or the one that is active, ends in an edge that bounds no face."""
+    return len(getattr(acting(surface), "flat_ends", ())) > 0
+
+
 def outer_height(surface: Surface, c: Scalar) -> Scalar:
     """Height of the centre of mass above the table while the lowest of all surfaces touches it,
     m.

@@ -417,6 +417,19 @@ class MeridianSurface(NamedTuple):
                 curvature = either(holds, h2, curvature)
         return height, slope, curvature
 
+    @property
+    def flat_ends(self) -> tuple[float, ...]:
+        """Cosines of the tilts, 1 and -1, at which the body would lie flat on an edge."""
+        ends = [1.0] if not self.spheres[0] else list[float]()
+        return (*ends, -1.0) if not self.spheres[len(self.spheres) - 1] else (*ends,)
+
+    def end_guard(self, axis: Vector) -> Scalar:
+        """Return what falls through zero as the body comes to lie on one of its flat ends."""
+        distance = 1.0
+        for end in self.flat_ends:
+            distance = distance * (1.0 - end * axis[2] - 0.5 * NEARLY_FLAT * NEARLY_FLAT)
+        return distance
+
     def gap_guard(self, axis: Vector, height: Scalar, margin: Scalar) -> Scalar:
         """Return what falls through zero as the gap and a margin do, m."""
         return height - self.support_at(axis)[0] + margin
