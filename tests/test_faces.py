@@ -383,3 +383,20 @@ def test_a_puck_stops_on_a_slope_where_friction_holds_it() -> None:
     run = tt.simulate(launched(0.4, 40.0, table=table), 20.0, samples=3)
     assert run.attrs["status"] == "at_rest"
     assert float(run["energy_error"]) < 1e-13
+
+
+@pytest.mark.parametrize("friction", [tt.CoulombFriction(mu=0.9), tt.ViscousFriction(mu=0.9)])
+def test_a_face_that_drills_fast_is_not_tipped(friction: tt.Friction) -> None:
+    """No point of its rim slips outwards, though friction on the whole face would move the
+    pressure there: mu h F > a1 with v < a1 w.
+    """
+    speed, spin = 0.9, 50.0
+    run = tt.simulate(launched(speed, spin, TALL, friction=friction), 2.0, samples=3)
+    is_dry = friction.kind == "coulomb"
+    assert run.attrs["status"] == ("at_rest" if is_dry else "completed")
+    assert run["event_kind"].values.tolist() == (["rests"] if is_dry else [])
+    assert float(run["energy_error"]) < 1e-13
+    if not is_dry:
+        time = 2.0
+        slip = math.hypot(*run["velocity"].values[-1, :2])
+        assert slip == pytest.approx(speed * math.exp(-0.9 * GRAVITY * time), rel=1e-11)

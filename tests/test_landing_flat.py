@@ -3,10 +3,19 @@
 import math
 from collections.abc import Sequence
 
+import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 import tippetop as tt
+from tippetop.contact.face_impact import face_impact
+from tippetop.mechanics.face_motion import law_of_face
+from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.laws.coulomb import CoulombLaw
+from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.surface import RingSurface
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.unsolved import Unsolved
 
 GRAVITY = 9.81
 RADIUS, THICKNESS, MASS = 0.015, 0.01, 0.05
@@ -196,3 +205,47 @@ def test_sweeps_follow_faces_that_land_as_runs_do() -> None:
         assert int(cell["flights"]) == int(run["flights"])
         for name in ("end_time", "energy_lost", "energy_lost_sliding", "airborne_time"):
             assert float(cell[name]) == pytest.approx(float(run[name]), rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_an_impact_of_a_face_leaves_is_possible(seed: int) -> None:
+    """The face has stopped sinking, v_n >= a1 |omega_h|, the impulse is one that the table can
+    exert, of friction within mu P and of the couple within a1 P, and energy is lost.
+
+    Where no point of the rim slips outwards the law of the whole face may ask more of the couple.
+    """
+    random = np.random.default_rng(seed)
+    radius, half = 1.0, random.uniform(0.1, 4.0)
+    inertia, axial, mu = random.uniform(0.2, 2.0), 0.5, random.uniform(0.05, 1.5)
+    top = Top.of(1.0, inertia, axial, RingSurface(radius, -half), CoulombLaw(mu), 1.0)
+    moves = random.choice([0.0, 1.0], 3)
+    spin, slip = random.normal() * moves[0], random.normal(size=2) * moves[1]
+    if seed % 2 == 0:  # it slips or drills, so that friction is not held by rounding
+        slip = random.normal(size=2)
+    turning = random.normal(size=2) * 0.5 * moves[2]
+    state = State(
+        (0.0, 0.0, 1.0),
+        (*(inertia * turning).tolist(), axial * float(spin)),
+        (*slip.tolist(), -float(random.uniform(0.01, 1.0))),
+        half,
+    )
+    restitution = float(random.choice([0.0, 0.6]))
+    try:
+        struck = face_impact(state, restitution, top, law_of_face(top, "uniform"))
+    except Unsolved as error:
+        assert "nothing tips the body" in str(error)  # noqa: PT017
+        return
+    after = struck.state
+    gained = np.subtract(after.velocity, state.velocity)
+    turned = np.subtract(after.momentum, state.momentum)
+    couple = turned - np.cross([0.0, 0.0, -half], gained)
+    assert gained[2] == pytest.approx(struck.impulse, rel=1e-11)
+    assert np.hypot(*gained[:2]) <= mu * struck.impulse * (1.0 + 1e-9)
+    drills_fast = np.hypot(*slip) < radius * abs(spin) and not turning.any()
+    if not drills_fast:
+        assert np.hypot(*couple[:2]) <= radius * struck.impulse * (1.0 + 1e-9)
+    omega = np.divide(after.momentum[:2], inertia)
+    assert after.velocity[2] >= radius * float(np.hypot(*omega)) - 1e-12
+    energies = [float(energy(each, top)) for each in (state, after)]
+    assert struck.energy_lost == pytest.approx(energies[0] - energies[1], abs=1e-13)
+    assert energies[1] <= energies[0]

@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 from tippetop.contact.closed_contacts import ClosedContacts
 from tippetop.contact.collision import SLOWEST_REBOUND, collision
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_on_two
-from tippetop.contact.face_impact import LEAN, SLOWEST_ON_FACE, face_impact
+from tippetop.contact.face_impact import LEAN, NOT_TIPPED, SLOWEST_ON_FACE, face_impact
 from tippetop.contact.face_mode import STOPPED, TIPPING, FaceMode
 from tippetop.contact.flight import LANDING, TOUCHING, Flight, Start
 from tippetop.contact.guards import (
@@ -634,7 +634,7 @@ class Automaton:
         moves = bool(face_speed(state.velocity[:2], state.momentum, contact) > REST)
         if not moves and is_set_valued(contact.friction):
             return self._from_rest_on_face(contact, time, state, events)
-        return self._slide_on_face(FaceMode(contact, law_type), time, state, events)
+        return self._slide_on_face(contact, time, state, events)
 
     def _from_rest_on_face(
         self, contact: Top, time: float, state: State, events: tuple[Event, ...]
@@ -663,24 +663,34 @@ class Automaton:
         return Transition((*events, event), mode, slips)
 
     def _slide_on_face(
-        self, mode: FaceMode, time: float, state: State, events: tuple[Event, ...]
-    ) -> Transition:
-        """Return the mode in which a face slides, or where it cannot hold the pressure tips."""
-        if pressure_reserve(mode.forces(mode.numbers(state)), mode.top) <= 0.0:
-            return self._tip_sliding(mode.top, time, state, events)
-        return Transition(events, mode, state)
-
-    def _tip_sliding(
         self, contact: Top, time: float, state: State, events: tuple[Event, ...]
     ) -> Transition:
-        """Return the mode in which a body that slides on its face begins to tip over its rim."""
-        direction = tipping_direction(state, contact)
-        if direction is None:
-            detail = (
-                "the pressure has come to the rim of the face, over which nothing tips the body"
-            )
-            return Transition(events, Status.FAILED, state, detail)
-        return self._tip(contact, time, state, direction, events)
+        """Return the mode in which a face slides, or where it cannot hold the pressure tips."""
+        mode = FaceMode(contact, law_of_face(contact, self.face_pressure))
+        if mode.tipping(mode.numbers(state)) <= 0.0:
+            return self._tip_sliding(mode, time, state, events)
+        return Transition(events, mode, state)
+
+    def _after_sliding(self, mode: Mode, end: ModeEnd, time: float) -> Transition:
+        """Return what follows where the pressure has come to the rim of a face that slides."""
+        assert isinstance(mode, FaceMode)
+        if mode.at_rim and pressure_reserve(mode.forces(mode.numbers(end.state)), mode.top) > 0.0:
+            return Transition((), replace(mode, at_rim=False), end.state)
+        return self._tip_sliding(mode, time, end.state, ())
+
+    def _tip_sliding(
+        self, mode: FaceMode, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
+        """Return the mode in which a body that slides on its face begins to tip over its rim; it
+        slides on where friction at the rim could not tip it.
+        """
+        direction = tipping_direction(state, mode.top)
+        if direction is not None:
+            return self._tip(mode.top, time, state, direction, events)
+        at_rim = replace(mode, at_rim=True)
+        if not mode.at_rim and at_rim.tipping(at_rim.numbers(state)) > 0.0:
+            return Transition(events, at_rim, state)
+        return Transition(events, Status.FAILED, state, NOT_TIPPED)
 
     def _tip(
         self,
@@ -1013,7 +1023,7 @@ RULES: dict[str, Rule] = {
     FLAT: lambda rules, mode, end, time: rules._after_settling(mode, end, time),
     STOPPED: lambda rules, mode, end, time: rules._from_rest_on_face(mode.top, time, end.state, ()),
     TILTED: lambda rules, mode, end, time: rules._after_tipping(mode, end, time),
-    TIPPING: lambda rules, mode, end, time: rules._tip_sliding(mode.top, time, end.state, ()),
+    TIPPING: lambda rules, mode, end, time: rules._after_sliding(mode, end, time),
     AT_REST: lambda rules, mode, end, time: Transition((), Status.AT_REST, end.state),
     LANDING: lambda rules, mode, end, time: rules._after_flight(off_branch(mode.top), end, time),
     TOUCH: lambda rules, mode, end, time: rules.touch(

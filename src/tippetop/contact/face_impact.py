@@ -72,7 +72,12 @@ begins: its energy is below rounding.
 MOST_STRIKES = 200
 """Strikes of the rim in one impact, after which a run is given up."""
 
-NOT_TIPPED = "the pressure comes to the rim of the face, over which nothing tips the body"
+NOT_TIPPED = (
+    "friction moves the pressure to the rim of the face, where by the law of friction at a point it"
+    " begins to slip just then: no motion of a rigid body fits both; with less friction, or another"
+    " contact.face_pressure, the body goes on"
+)
+"""Detail of the status where what is assumed of the pressure of a face has no sequel."""
 
 
 class FaceImpact(NamedTuple):
@@ -179,7 +184,7 @@ class FaceStrike:
             state = pressed.state
             impulse, steps = impulse + weight * pressed.elapsed, steps + pressed.steps
             if pressed.tips:
-                struck = self.at_rim(pressed, restitution)
+                struck = self.at_rim(pressed, restitution, float(energy(before, self.top)))
                 state, steps = struck.state, steps + struck.steps
                 impulse += float(struck.impulse)
         raise Unsolved("its face and its rim strike in turns for ever")
@@ -206,38 +211,39 @@ class FaceStrike:
                     continue
                 factor = SLOWEST_ON_FACE * sinking * (x * x + y * y) ** -0.5
                 moving = still(state, (factor * x, factor * y), 0.0)
-            if pressure_reserve(mode.forces(mode.numbers(moving)), top) <= 0.0:
-                tips = True
+            if not mode.at_rim and mode.tipping(mode.numbers(moving)) <= 0.0:
+                tips, mode = self._tips(mode, moving)
                 continue
             for segment in mode.segments(elapsed, moving, span, unnamed_integrator()):
                 elapsed, moving, steps = segment.end_time, segment.end_state, steps + segment.steps
                 if segment.mode_end is not None and segment.mode_end.cause == FAILURE:
                     raise Unsolved(f"in an impact of a face {segment.mode_end.detail}")
-                tips = segment.mode_end is not None and segment.mode_end.cause == TIPPING
+                if segment.mode_end is not None and segment.mode_end.cause == TIPPING:
+                    tips, mode = self._tips(mode, moving)
         part = 1.0 - elapsed / compression if tips else -restitution
         after = self._with_turning(state, moving, part)
         return PressedFace(after, elapsed, compression, steps, tips)
 
-    def at_rim(self, pressed: PressedFace, restitution: float) -> Impact:
+    def at_rim(self, pressed: PressedFace, restitution: float, most: float) -> Impact:
         """Return what an impulse at the rim does after one that has pressed the face.
 
-        The impulse of restitution is that of all compression.
+        The impulse of restitution is that of all compression; there is none that would leave the
+        body more than the energy `most`.
         """
         state, weight = pressed.state, self.top.mass * self.top.gravity
-        rim = self._struck_rim(state)
-        if pressed.elapsed == 0.0:
-            return upright(impact(leaning_to(state, rim), restitution, self.top))
+        leaning = leaning_to(state, self._struck_rim(state))
+        prior = weight * pressed.elapsed
         if pressed.elapsed >= pressed.compression:
-            lasts = (1.0 + restitution) * pressed.compression - pressed.elapsed
-            return upright(restored_impact(leaning_to(state, rim), weight * lasts, self.top))
-        compressed = impact(leaning_to(state, rim), 0.0, self.top)
-        impulse = restitution * (weight * pressed.elapsed + float(compressed.impulse))
-        if impulse == 0.0:
-            return upright(compressed)
-        restored = restored_impact(compressed.state, impulse, self.top)
-        total = compressed.impulse + restored.impulse
-        steps = compressed.steps + restored.steps
-        return upright(restored._replace(impulse=total, steps=steps))
+            lasts = (1.0 + restitution) * weight * pressed.compression - prior
+            restored = restored_impact(leaning, lasts, self.top)
+            unrestored = Impact(leaning, 0.0, 0.0, 0.0)
+        elif prior == 0.0 or restitution == 0.0:
+            return upright(impact(leaning, restitution, self.top))
+        else:
+            restored = impact(leaning, restitution, self.top, prior=prior)
+            unrestored = impact(leaning, 0.0, self.top)
+        gains = energy(upright(restored).state, self.top) > most
+        return upright(unrestored if gains else restored)
 
     def _struck_rim(self, state: State) -> Horizontal:
         """Return the direction of the point of the rim that is struck: that which sinks fastest, or
@@ -251,6 +257,15 @@ class FaceStrike:
             raise Unsolved(NOT_TIPPED)
         up = state.axis[2]
         return (up * lean[0], up * lean[1])
+
+    def _tips(self, mode: FaceMode, moving: State) -> tuple[bool, FaceMode]:
+        """Return whether the rim is struck where the pressure has come to it, and the mode that
+        else goes on, as friction at the rim could not tip the body.
+        """
+        turns = isinstance(mode, StruckFace)
+        if mode.at_rim or turns or tipping_direction(moving, self.top) is not None:
+            return True, mode
+        return False, replace(mode, at_rim=True)
 
     def _mode(self, turning: Horizontal) -> FaceMode:
         """Return the mode in which the face slips meanwhile, of which a body that does not turn has

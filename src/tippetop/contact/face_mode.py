@@ -20,6 +20,7 @@ from tippetop.mechanics.face_motion import (
     lying_flat,
     pressure_reserve,
     resting_on_face,
+    rim_reserve,
     sliding_on_face,
 )
 from tippetop.mechanics.state import SlidingState, State
@@ -57,6 +58,11 @@ class FaceMode(IntegratedMode):
     """The class of the law of the face (see `tippetop.mechanics.face_motion.law_of_face`)."""
     slips: bool = True
     """Whether the face slips or drills; else friction holds it."""
+    at_rim: bool = False
+    """Whether the pressure has come to the rim by the friction of the face, but no friction at the
+    rim could tip the body over it. The centre of pressure is taken to stay at the rim then, and
+    friction to be that of the whole face, which it overstates.
+    """
 
     name: ClassVar[str] = "face"
     further: ClassVar[int] = 0
@@ -66,6 +72,11 @@ class FaceMode(IntegratedMode):
     def status(self) -> str:
         """Name of the motion in a result, without the surface that touches."""
         return "sliding_flat" if self.slips else "resting_flat"
+
+    @property
+    def form(self) -> str:
+        """Modes of the same form and tops read the same from their numbers."""
+        return f"{self.status} at rim" if self.at_rim else self.status
 
     @property
     def lasting(self) -> bool:
@@ -102,6 +113,12 @@ class FaceMode(IntegratedMode):
             return resting_on_face(axis, self.top)
         return sliding_on_face(axis, momentum, velocity, self.law_type, self.top)
 
+    def tipping(self, y: Row) -> Scalar:
+        """Return what falls through zero where the face holds the body no longer."""
+        if self.at_rim:
+            return rim_reserve(SlidingState.unpack(y), self.forces(y), self.top)
+        return pressure_reserve(self.forces(y), self.top)
+
     def rates(self, y: Row) -> tuple[Scalar, ...]:
         """Rates of axis, angular momentum and velocity."""
         forces, (axis, momentum, velocity) = self.forces(y), SlidingState.unpack(y)
@@ -116,7 +133,7 @@ class FaceMode(IntegratedMode):
         (u, v), (p, q, _) = now.velocity, forces.force
         power = p * u + q * v + forces.torque * drilling_rate(now.momentum, self.top)
         torque, couple = (*forces.couple, forces.torque), (0.0, 0.0, forces.torque)
-        reserve = pressure_reserve(forces, self.top)
+        reserve = None if self.at_rim else pressure_reserve(forces, self.top)
         return Reaction(forces.force, torque, power, couple, reserve=reserve)
 
     def segments(
@@ -210,8 +227,8 @@ def face_motion(form: Any, kind: Kind) -> Motion:
         return values
 
     def tipping(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
-        forces = mode(numbers).forces(in_natural_units(y, numbers))
-        return pressure_reserve(forces, mode(numbers).top)
+        reserve: Scalar = mode(numbers).tipping(in_natural_units(y, numbers))
+        return reserve
 
     def slowed(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
         state = SlidingState.unpack(y)

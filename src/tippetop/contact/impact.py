@@ -135,6 +135,9 @@ PAST = 1e-11
 tell whether it is: what is held longer than it can be is this squared.
 """
 
+ANY_WORK = 1e6
+"""Work, in units of the impact, that no impulse of restitution does."""
+
 SMALL_SLIP = 1e-12
 """Slip, in units of the impact, at which the stiffness of a law is taken: far below slip at which a
 law bends, far above where its square underflows.
@@ -171,6 +174,7 @@ def impact(
     top: Top,
     beside: Top | None = None,
     integrator: Integrator | None = None,
+    prior: float = 0.0,
 ) -> Impact:
     """Return the impact of a body that touches the table.
 
@@ -188,6 +192,9 @@ def impact(
         None if none is.
     integrator
         What follows the equations; None for the one that runs have unless they name another.
+    prior
+        Normal impulse of compression that the contact has had already, N s: it is restored, too,
+        and the work of restitution is not bounded then.
 
     Raises
     ------
@@ -204,7 +211,7 @@ def impact(
     body = StruckBody.of(state, (top,) if beside is None else (top, beside))
     law = body.contacts.laws[0]
     if beside is None and isinstance(law, ViscousLaw) and body.contacts.resistance is None:
-        return _viscous_impact(body, law, restitution)
+        return _viscous_impact(body, law, restitution, prior)
     process = ImpactProcess(body, integrator or unnamed_integrator())
     status = process.start()
     if not process.is_struck(status):
@@ -212,7 +219,10 @@ def impact(
     compressed, status, steps = process.until_compressed(NO_IMPULSE, status)
     impulse, compression = compressed, compressed[FIRST]
     if restitution > 0.0 and compression > 0.0:
-        impulse, status, further_steps = process.restored(compressed, status, restitution)
+        if prior:
+            compressed = (*compressed[:WORK], compressed[WORK] - ANY_WORK)
+        part = restitution * _all_compression(body, compression, prior)
+        impulse, status, further_steps = process.restored(compressed, status, part)
         steps += further_steps
     return _impact_of(body, impulse, compression, steps, process.stilled(impulse, status))
 
@@ -221,7 +231,7 @@ def restored_impact(
     state: State, impulse: float, top: Top, integrator: Integrator | None = None
 ) -> Impact:
     """Return what a normal impulse of restitution does to a body that touches the table at one
-    contact.
+    contact; it may do more work than compression took.
 
     Parameters
     ----------
@@ -261,7 +271,12 @@ def begins_without_approach(
     return process.is_struck(process.start())
 
 
-def _viscous_impact(body: StruckBody, law: ViscousLaw, restitution: float) -> Impact:
+def _all_compression(body: StruckBody, compression: float, prior: float) -> float:
+    """Return the normal impulse of compression with a prior one, N s, in units of the first."""
+    return 1.0 + prior / (float(body.units.mass * body.units.speed) * compression)
+
+
+def _viscous_impact(body: StruckBody, law: ViscousLaw, restitution: float, prior: float) -> Impact:
     """Return the impact with viscous friction on one contact, in closed form."""
     process = ViscousImpact.of(body, law)
     if not process.is_struck:
@@ -269,7 +284,8 @@ def _viscous_impact(body: StruckBody, law: ViscousLaw, restitution: float) -> Im
     impulse = process.compressed()
     compression = impulse[FIRST]
     if restitution > 0.0 and compression > 0.0:
-        impulse = process.restored(impulse, restitution)
+        part = restitution * _all_compression(body, compression, prior)
+        impulse = process.restored(impulse, part)
     return _impact_of(body, impulse, compression, 0, body.after(impulse))
 
 
@@ -338,9 +354,9 @@ class ImpactProcess:
 
     def driven(self, full: float) -> tuple[Impulse, StruckStatus, int]:
         """Return the impulse whose normal part is `full`, the status then, and how many steps lead
-        to it.
+        to it; the work that it may do is not bounded.
         """
-        return self._until(NO_IMPULSE, self.start(), (SPENT,), full)
+        return self._until((*NO_IMPULSE[:WORK], -ANY_WORK), self.start(), (SPENT,), full)
 
     def after_compression(self, impulse: Impulse, least: float) -> StruckStatus:
         """Return the status of two contacts where restitution begins."""

@@ -53,7 +53,9 @@ rounding.
 """
 
 UNRESOLVED = 1e-13
-"""Last coefficient of the rates, in natural units, up to which a step is resolved."""
+"""Last coefficient of the rates, in natural units, up to which a step is resolved; one that changes
+the numbers by rounding is, too: of the inverse of a small tilt the rates have few digits.
+"""
 
 
 @dataclass(frozen=True)
@@ -163,8 +165,8 @@ class TipOnset(Mode):
             largest = max([1.0, *[abs(each[STAGES - 1]) for each in points]])
             if moved <= UNMOVED * largest and max(map(abs, changes)) <= UNRESOLVED:
                 tails = [abs(coefficients(each)[STAGES - 1]) for each in rates]
-                lasts = max(tails) <= UNRESOLVED and self._lasts(points)
-                return rates if lasts else None
+                is_resolved = max(tails) <= max(UNRESOLVED, UNMOVED / length)
+                return rates if is_resolved and self._lasts(points) else None
         return None
 
     def _lasts(self, points: list[list[float]]) -> bool:

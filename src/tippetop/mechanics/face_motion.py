@@ -10,10 +10,11 @@ its rim.
 
 from typing import Any, NamedTuple
 
+from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.field import OuterForces
 from tippetop.mechanics.laws.face_friction import face_law_type
 from tippetop.mechanics.motion import angular_velocity, outer_forces_in
-from tippetop.mechanics.state import State
+from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surfaces.hull import Hull, acting
 from tippetop.mechanics.surfaces.surface import Surface, support_at
 from tippetop.mechanics.top import Top
@@ -227,3 +228,21 @@ def pressure_reserve(forces: FaceForces, top: Top) -> Scalar:
     outer, normal = face_radii(top.surface)[1], forces.force[2]
     x, y = forces.couple
     return normal * normal - (x * x + y * y) / (outer * outer)
+
+
+def rim_reserve(state: SlidingState, forces: FaceForces, top: Top) -> Scalar:
+    """Return what is positive while no point of the rim slips outwards so fast that the pressure
+    could all be there, where that of the face has come to the rim.
+
+    At the point of `tipping_direction` the slip is sqrt(v^2 - (a1 w)^2). Dry friction there is mu N
+    from the start, and the pressure of the face has come to the rim by less. Other friction is
+    taken to be smaller than that of the middle as the slip is: exact of viscous friction, with
+    which the centre of pressure r moves as N r = -h F with F = -mu N (v + w z x r).
+    """
+    (u, v), outer = state.velocity, face_radii(top.surface)[1]
+    drilled, square = outer * drilling_rate(state.momentum, top), u * u + v * v
+    outward = square - drilled * drilled
+    if is_set_valued(top.friction):
+        return -outward
+    (x, y, normal), height = forces.force, support_at(state.axis, top.surface)[0]
+    return outer * outer * normal * normal * square - height * height * (x * x + y * y) * outward
