@@ -24,6 +24,7 @@ ADAPTERS: Mapping[str, str] = {
     "pybullet": "PyBullet",
     "drake": "Drake",
     "exudyn": "Exudyn",
+    "rapier": "Rapier",
 }
 """The classes of the adapters by their names and files."""
 
