@@ -16,18 +16,20 @@ from tippetop.engines.adapters.base import (
 from tippetop.engines.bodies import friction_numbers, launch_state, primitives
 from tippetop.engines.cases import Case
 
-_GUIDE = "rapier.rs, Rigid-bodies and Colliders"
+_DOCUMENTATION = "rapier.rs, Rigid-bodies and Colliders"
 _UNIT = (
     "IntegrationParameters.length_unit: about the size of most dynamic bodies; lengths that the"
     " solver tolerates scale with it"
 )
-_ROUNDS = (
+_ACCURATE = (
     "IntegrationParameters.num_solver_iterations: the more, the more accurate; FrictionModel: one"
     " Coulomb constraint at each point"
 )
-_STIFF = "IntegrationParameters.contact_softness: natural frequency and damping ratio of contacts"
+_SOFTNESS = (
+    "IntegrationParameters.contact_softness: natural frequency and damping ratio of contacts"
+)
 
-MANY_ROUNDS = 32
+MANY_ACCURATE = 32
 """Rounds of the solver, each a substep; the default is 4."""
 
 
@@ -38,7 +40,7 @@ class Rapier:
     package = "rapier3d"
     module = "rapier3d"
     settings = (
-        Setting("default", "parameters by default, without sleeping", _GUIDE, {}),
+        Setting("default", "parameters by default, without sleeping", _DOCUMENTATION, {}),
         Setting(
             "length unit",
             "a length unit of the body's size",
@@ -48,14 +50,14 @@ class Rapier:
         Setting(
             "32 rounds",
             "as length unit, with 32 rounds of the solver and Coulomb's law at each point",
-            f"{_UNIT}; {_ROUNDS}",
-            {"sized": True, "rounds": MANY_ROUNDS, "coulomb": True},
+            f"{_UNIT}; {_ACCURATE}",
+            {"sized": True, "rounds": MANY_ACCURATE, "coulomb": True},
         ),
         Setting(
             "stiff",
             "as 32 rounds, with a natural frequency of 0.3/step and a damping ratio of 1",
-            f"{_STIFF}; {_UNIT}; {_ROUNDS}",
-            {"sized": True, "rounds": MANY_ROUNDS, "coulomb": True, "per_step": 0.3},
+            f"{_SOFTNESS}; {_UNIT}; {_ACCURATE}",
+            {"sized": True, "rounds": MANY_ACCURATE, "coulomb": True, "per_step": 0.3},
         ),
     )
 

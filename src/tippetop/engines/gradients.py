@@ -1,0 +1,344 @@
+"""Derivatives of the last state by the launch, as programs that offer gradients give them.
+
+Run as ``python -m tippetop.engines.gradients``, it measures every number anew in the programs that
+are installed and prints it; with ``--write`` it stores them, which the page about it shows.
+
+A state that is judged (`reference.judged_state`) is differentiated by a number of the launch.
+MuJoCo differs each step by all of its state (`mjd_transitionFD`); the product of these matrices
+carries the change of the launch to the end. MJX differentiates its steps by JAX. Beside them stands
+what the same program gives where whole runs are differed: a gradient may be true to its program, or
+to the problem, or to neither.
+"""
+
+import functools
+import importlib.metadata
+import json
+import math
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import tippetop as tt
+from tippetop.engines.adapters import adapter
+from tippetop.engines.adapters.base import Setting
+from tippetop.engines.bodies import launch_state
+from tippetop.engines.cases import Case
+from tippetop.engines.comparison import STEPS
+from tippetop.engines.reference import case_of, judged_state
+from tippetop.support.errors import Unavailable
+
+Array = NDArray[np.float64]
+
+GRADIENTS = "gradients.json"
+"""File of this package that has what is measured."""
+
+DIFFERENTIATED = ("coulomb-roll", "drilling", "puck", "peg", "slope")
+"""Cases whose launch is differentiated."""
+
+PARAMETERS = ("launch.spin", "launch.tilt")
+"""Numbers of the launch."""
+
+PART = 1e-5
+"""Change of a number of the launch in differences of whole runs, relative."""
+
+PERTURBATIONS = (1e-6, 1e-8)
+"""Changes of a state in `mjd_transitionFD`: that of MuJoCo's examples, and a smaller one. A contact
+that is less deep than the change opens within it."""
+
+ORIENTATION = slice(3, 6)
+"""Where the change of orientation is in a change of MuJoCo's state, in the body's axes."""
+
+
+class LaunchGradient(NamedTuple):
+    """A derivative of a judged state by a number of the launch, in a program."""
+
+    program: str
+    method: str
+    setting: str
+    case: str
+    parameter: str
+    step: float
+    """Length of the steps, s."""
+    error: float
+    """Largest difference from the exact derivative, over its largest component; nan where the
+    program gives no number."""
+
+
+def exact_gradient(case: Case, parameter: str) -> Array:
+    """Return the exact derivative of the judged state of a case by a number of its launch."""
+    until = float(case.times[case.judged - 1])
+    slopes = tt.sensitivities(case.problem, until, [parameter], times=[0.0, until])
+    last = slopes.isel(parameter=0, time=-1)
+    # A judged state is linear in axis and angular velocity.
+    return judged_state(case, last["axis"].values, last["angular_velocity"].values)
+
+
+def _error(gradient: Array, exact: Array) -> float:
+    """Return the largest difference over the largest component; nan without a number."""
+    error = float(np.abs(gradient - exact).max() / np.abs(exact).max())
+    return error if math.isfinite(error) else math.nan
+
+
+# MuJoCo
+
+
+class MuJoCoLaunch:
+    """A case in MuJoCo with steps of a length, and changes of its launch."""
+
+    def __init__(self, case: Case, step: float, setting: Setting) -> None:
+        try:
+            import mujoco  # noqa: PLC0415 - optional
+        except ImportError:
+            raise Unavailable("MuJoCo is not installed: pip install 'tippetop[engines]'") from None
+        self.mujoco, self.case = mujoco, case
+        until = float(case.times[case.judged - 1])
+        self.count = math.ceil(until / step * (1.0 - 1e-9))
+        self.step, self.setting = until / self.count, setting
+        stepper: Any = adapter("mujoco").start(case, self.step, setting)
+        self.model, self.data = stepper.model, stepper.data
+
+    def run_of(self, problem: tt.Problem) -> Any:
+        """Return a run of a problem whose launch is another."""
+        return adapter("mujoco").start(self.case._replace(problem=problem), self.step, self.setting)
+
+    def change(self, parameter: str) -> Array:
+        """Return the change of MuJoCo's state at launch, by a number of the launch."""
+        value = self.case.problem.get(parameter)
+        ends = []
+        for sign in (1.0, -1.0):
+            problem = self.case.problem.replace({parameter: value * (1.0 + sign * PART)})
+            state = launch_state(problem)
+            ends.append(
+                (
+                    np.array([*state.position, *state.quaternion]),
+                    np.array([*state.velocity, *state.omega_body]),
+                )
+            )
+        (high, fast), (low, slow) = ends
+        turned = np.zeros(6)
+        self.mujoco.mj_differentiatePos(self.model, turned, 2.0 * PART * value, low, high)
+        return np.concatenate([turned, (fast - slow) / (2.0 * PART * value)])
+
+    def carried(self, change: Array, perturbation: float) -> Array:
+        """Return the change of the judged state that a change at launch becomes, step by step, by
+        differences with a change of the state.
+        """
+        mujoco, model, data = self.mujoco, self.model, self.data
+        size = 2 * model.nv
+        matrix = np.zeros((size, size))
+        for _ in range(self.count):
+            mujoco.mjd_transitionFD(model, data, perturbation, True, matrix, None, None, None)
+            change = matrix @ change
+            mujoco.mj_step(model, data)
+        return self.judged(change, np.array(data.qpos), np.array(data.qvel))
+
+    def judged(self, change: Array, place: Array, motion: Array) -> Array:
+        """Return the change of the judged state by that of MuJoCo's state at the end."""
+        entries = np.zeros(9)
+        self.mujoco.mju_quat2Mat(entries, place[3:7])
+        turn = entries.reshape(3, 3)
+        turned, spun = change[ORIENTATION], change[9:12]
+        axis = turn @ np.cross(turned, [0.0, 0.0, 1.0])
+        omega = turn @ (np.cross(turned, motion[3:6]) + spun)
+        return judged_state(self.case, axis, omega)
+
+    def differed(self, parameter: str) -> Array:
+        """Return the derivative of the judged state by differences of whole runs."""
+        value, ends = self.case.problem.get(parameter), []
+        for sign in (1.0, -1.0):
+            run = self.run_of(self.case.problem.replace({parameter: value * (1.0 + sign * PART)}))
+            run.advance(self.count)
+            state = run.read()
+            ends.append(judged_state(self.case, state.axis, state.omega))
+        slope: Array = (ends[0] - ends[1]) / (2.0 * PART * value)
+        return slope
+
+
+def _mujoco(case: Case, step: float) -> Iterator[tuple[str, str, Callable[[str], Array]]]:
+    """Yield method, setting and function of a parameter for MuJoCo."""
+    made = adapter("mujoco")
+    for setting in made.settings:
+        if made.refusal(case, setting):
+            continue
+        launch = MuJoCoLaunch(case, step, setting)
+        yield "differences of runs", setting.name, launch.differed
+        if setting.options.get("integrator") == "RK4":
+            continue  # mjd_transitionFD refuses it.
+        for perturbation in PERTURBATIONS:
+            yield (
+                f"mjd_transitionFD, eps {perturbation:g}",
+                setting.name,
+                functools.partial(_stepwise, case, step, setting, perturbation),
+            )
+
+
+def _stepwise(
+    case: Case, step: float, setting: Setting, perturbation: float, parameter: str
+) -> Array:
+    """Return the derivative of the judged state by `mjd_transitionFD` at every step."""
+    launch = MuJoCoLaunch(case, step, setting)
+    return launch.carried(launch.change(parameter), perturbation)
+
+
+# MJX
+
+
+def _mjx(case: Case, step: float) -> Iterator[tuple[str, str, Callable[[str], Array]]]:
+    """Yield method, setting and function of a parameter for MJX, by forward mode of JAX.
+
+    MJX has no noslip solver.
+    """
+    made = adapter("mujoco")
+    for setting in made.settings:
+        if made.refusal(case, setting) or setting.options.get("noslip_iterations"):
+            continue
+        launch = MuJoCoLaunch(case, step, setting)
+        yield "forward mode of JAX", setting.name, functools.partial(_by_jax, launch)
+
+
+def _by_jax(launch: MuJoCoLaunch, parameter: str) -> Array:
+    """Return the derivative of the judged state by a parameter in MJX."""
+    from mujoco import mjx  # noqa: PLC0415 - optional
+
+    multiply, follow = launch.mujoco.mju_mulQuat, _following()
+    state = launch_state(launch.case.problem)
+    place = np.array([*state.position, *state.quaternion])
+    motion = np.array([*state.velocity, *state.omega_body])
+    change, rotated = launch.change(parameter), np.zeros(4)
+    multiply(rotated, place[3:7], np.concatenate([[0.0], change[ORIENTATION]]))
+    shift = np.concatenate([change[:3], 0.5 * rotated])
+    model, data = mjx.put_model(launch.model), mjx.put_data(launch.model, launch.data)
+    ends, changes = follow(model, data, launch.count, place, motion, shift, change[6:])
+    place, motion, moved, sped = (np.array(one) for one in (*ends, *changes))
+    back, inverse = np.zeros(4), place[3:7] * (1.0, -1.0, -1.0, -1.0)
+    multiply(back, inverse / (inverse @ inverse), moved[3:7])
+    end = np.concatenate([moved[:3], 2.0 * back[1:], sped])
+    return launch.judged(end, place, motion)
+
+
+@functools.cache
+def _following() -> Any:
+    """Return a compiled function that follows a launch in MJX, and a change of it."""
+    import jax  # noqa: PLC0415 - optional
+    from mujoco import mjx  # noqa: PLC0415 - optional
+
+    jax.config.update("jax_enable_x64", True)
+
+    def stepped(model: Any, data: Any) -> Any:
+        """Return data after a step, with the same types: in double precision, MJX widens some."""
+        after = mjx.step(model, data)
+        return jax.tree_util.tree_map(
+            lambda new, old: jax.numpy.asarray(new, old.dtype), after, data
+        )
+
+    def follow(model: Any, data: Any, count: Any, place: Any, motion: Any, *change: Any) -> Any:
+        def last(place: Any, motion: Any) -> Any:
+            moved = data.replace(qpos=place, qvel=motion)
+            end = jax.lax.fori_loop(0, count, lambda _, one: stepped(model, one), moved)
+            return end.qpos, end.qvel
+
+        return jax.jvp(last, (place, motion), change)
+
+    return jax.jit(follow)
+
+
+# What is measured and stored
+
+PROGRAMS: Mapping[str, Callable[[Case, float], Iterator[tuple[str, str, Any]]]] = {
+    "MuJoCo": _mujoco,
+    "MJX": _mjx,
+}
+"""How programs give derivatives of a case at a step."""
+
+MODULES = {"MuJoCo": ("mujoco", "mujoco"), "MJX": ("mujoco-mjx", "mujoco.mjx")}
+"""Package and module of each program."""
+
+CASES_OF = {"MuJoCo": DIFFERENTIATED, "MJX": ("coulomb-roll", "slope")}
+"""Cases that are measured: MJX is compiled for a minute or more for each setting."""
+
+
+def version_of(program: str) -> str | None:
+    """Return the version of a program; None where it is not installed."""
+    package, _ = MODULES[program]
+    try:
+        return importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return None
+
+
+def measured(program: str) -> Iterator[LaunchGradient]:
+    """Yield the derivatives that a program gives now."""
+    for name in CASES_OF[program]:
+        case = case_of(name)
+        for parameter in PARAMETERS:
+            if not case.problem.get(parameter):
+                continue
+            exact = exact_gradient(case, parameter)
+            for step in STEPS:
+                for method, setting, function in PROGRAMS[program](case, step):
+                    with np.errstate(over="ignore", invalid="ignore"):
+                        error = _error(function(parameter), exact)
+                    yield LaunchGradient(program, method, setting, name, parameter, step, error)
+
+
+def stored() -> dict[str, Any]:
+    """Return what was measured: `versions` by program, and `rows`."""
+    record = json.loads((files(__package__) / GRADIENTS).read_text(encoding="utf-8"))
+    rows = list[LaunchGradient]()
+    for row in record["rows"]:
+        values: dict[str, Any] = {
+            name: math.nan if value is None else value for name, value in row.items()
+        }
+        rows.append(LaunchGradient(**values))
+    return {**record, "rows": rows}
+
+
+def _store(program: str, rows: Sequence[LaunchGradient]) -> None:
+    """Put the rows of a program into what is stored, in place of earlier ones."""
+    path = Path(str(files(__package__) / GRADIENTS))
+    earlier = stored() if path.is_file() else {"versions": {}, "rows": []}
+    versions = {**earlier["versions"], program: version_of(program)}
+    others = [row for row in earlier["rows"] if row.program != program]
+    lines = [
+        json.dumps(
+            {name: None if value != value else value for name, value in row._asdict().items()}
+        )
+        for row in (*others, *rows)
+    ]
+    body = ",\n".join(lines)
+    path.write_text(
+        f'{{"versions": {json.dumps(versions)}, "rows": [\n{body}\n]}}\n', encoding="utf-8"
+    )
+
+
+def main(words: list[str]) -> None:
+    """Print the errors of derivatives in the programs that are installed; --write stores them.
+
+    Programs may be named.
+    """
+    chosen = [name for name in PROGRAMS if name in words] or list(PROGRAMS)
+    for program in chosen:
+        version = version_of(program)
+        if version is None:
+            print(f"{program} is not installed: pip install {MODULES[program][0]}")
+            continue
+        print(f"{program} {version}, tippetop {tt.__version__}")
+        rows = []
+        for row in measured(program):
+            rows.append(row)
+            print(
+                f"{row.case:<14}{row.parameter:<13}{1e3 * row.step:>6g} ms  {row.setting:<11}"
+                f"{row.method:<30}{row.error:.2g}",
+                flush=True,
+            )
+        if "--write" in words:
+            _store(program, rows)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

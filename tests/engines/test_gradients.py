@@ -1,0 +1,68 @@
+"""Derivatives of launches in other programs: the exact ones, and what is stored of theirs."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tippetop.engines import gradients
+from tippetop.engines.adapters import adapter
+from tippetop.engines.comparison import STEPS
+from tippetop.engines.reference import case_of, judged_state
+from tippetop.run import simulate
+
+
+@pytest.mark.parametrize("parameter", gradients.PARAMETERS)
+def test_the_exact_derivative_is_that_of_exact_runs(parameter):
+    case = case_of("slope")
+    value, part = case.problem.get(parameter), 1e-4
+    until = float(case.times[case.judged - 1])
+    ends = []
+    for sign in (1.0, -1.0):
+        problem = case.problem.replace({parameter: value * (1.0 + sign * part)})
+        run = simulate(problem, until, samples=2)
+        ends.append(judged_state(case, run["axis"].values[-1], run["angular_velocity"].values[-1]))
+    differed = (ends[0] - ends[1]) / (2.0 * part * value)
+    exact = gradients.exact_gradient(case, parameter)
+    assert exact == pytest.approx(differed, rel=1e-6, abs=1e-6 * np.abs(exact).max())
+
+
+def test_stored_derivatives_are_of_every_case_and_step():
+    stored = gradients.stored()
+    for program in stored["versions"]:
+        rows = [row for row in stored["rows"] if row.program == program]
+        asked = {
+            (name, parameter, step)
+            for name in gradients.CASES_OF[program]
+            for parameter in gradients.PARAMETERS
+            if case_of(name).problem.get(parameter)
+            for step in STEPS
+        }
+        assert {(row.case, row.parameter, row.step) for row in rows} == asked
+        assert all(row.error > 0.0 or math.isnan(row.error) for row in rows)
+
+
+def test_the_page_says_what_is_stored():
+    rows = gradients.stored()["rows"]
+    errors = {
+        (row.case, row.parameter, row.setting, row.method, row.step): row.error for row in rows
+    }
+    by_runs, stepwise = "differences of runs", "mjd_transitionFD, eps 1e-08"
+    # A contact that stays deeper than the difference: true to the program, and near the problem.
+    for step in STEPS:
+        key = ("peg", "launch.spin", "stiff")
+        assert errors[*key, stepwise, step] == pytest.approx(errors[*key, by_runs, step], rel=0.02)
+        assert errors[*key, by_runs, step] < 0.05
+    # A launch that just touches: differences of the first step open the contact.
+    assert min(errors["peg", "launch.tilt", "stiff", stepwise, step] for step in STEPS) > 100.0
+
+
+@pytest.mark.slow
+def test_steps_carry_a_change_as_runs_do_in_mujoco():
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    case, made = case_of("peg"), adapter("mujoco")
+    (stiff,) = (one for one in made.settings if one.name == "stiff")
+    launch = gradients.MuJoCoLaunch(case, 2e-3, stiff)
+    differed = launch.differed("launch.spin")
+    carried = launch.carried(launch.change("launch.spin"), 1e-8)
+    assert carried == pytest.approx(differed, abs=1e-3 * np.abs(differed).max())
