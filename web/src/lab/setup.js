@@ -47,7 +47,9 @@ function changeLaw(problem, kind) {
   const { friction } = problem;
   if (friction.kind === kind) return;
   const mu = friction.mu || USUAL_FRICTION;
-  problem.friction = { kind, mu, ...LAWS[kind](mu) };
+  // A law that there is none of is refused later.
+  const others = Object.hasOwn(LAWS, kind) ? LAWS[kind](mu) : {};
+  problem.friction = { kind, mu, ...others };
 }
 
 function setField(problem, field, value) {
