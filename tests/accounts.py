@@ -16,6 +16,12 @@ PUCK = tt.Body(
     I1=2.0416666666666667e-6,
     I3=4e-6,
 )
+CYLINDER = tt.Body(
+    mass=0.1,
+    shape=[tt.Ring(radius=0.02, center=-0.03), tt.Ring(radius=0.02, center=0.03)],
+    I1=4e-5,
+    I3=2e-5,
+)
 RING_TOP = tt.Body(
     mass=0.01,
     shape=[tt.Sphere(radius=5e-4, center=-0.0295), tt.Ring(radius=0.1, center=0.0)],
@@ -96,6 +102,7 @@ LAUNCHES: dict[str, tuple[tt.Problem, float]] = {
         of(PUCK, COULOMB, tilt=0.001, spin=-100.0, precession=1400.0, velocity=(0.0, 0.0, 0.0)),
         20.0,
     ),
+    "cylinder that rocks": (of(CYLINDER, tt.CoulombFriction(mu=0.9), tilt=0.1, spin=0.0), 2.0),
     "coin": (of(tt.presets.COIN, COULOMB, tilt=1.2, spin=0.0, gap=0.01), 5.0),
     "ring top": (of(RING_TOP, tt.CoulombFriction(mu=0.2), tilt=0.001, spin=50.0), 5.0),
     "ring top, falls": (of(RING_TOP, tt.ViscousFriction(mu=0.3), tilt=0.1, spin=3.0), 20.0),

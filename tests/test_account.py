@@ -177,6 +177,14 @@ def test_a_disk_lies_down_and_goes_on_upon_its_face() -> None:
     assert named(account, "comes_to_rest_on_face")["time"] == float(run["end_time"]) > down + 0.1
 
 
+def test_a_cylinder_rocks_on_its_rim_until_it_lies() -> None:
+    run = followed("cylinder that rocks")
+    kinds = run["event_kind"].values
+    (down,) = run["event_time"].values[kinds == "lies down"].tolist()
+    told = named(describe(run), "rocks_on_rim")
+    assert told == {"count": int((kinds == "impact").sum()), "time": down}
+
+
 def test_two_balls_stand_on_the_ball_that_touches() -> None:
     told = named(describe(followed("two balls, dry")), "stands_on_sphere")
     assert told == {"surface": 0, "length": 0.2}

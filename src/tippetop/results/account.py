@@ -200,14 +200,44 @@ def _flights(facts: Facts) -> list[Clause]:
     return clauses
 
 
+TOLD_AT_EITHER_END = 3
+"""How many of the first and of the last changes between a face and its rim are told: more would
+hide the rest of the account.
+"""
+
+
 def _onto_face(facts: Facts) -> list[Clause]:
-    """Return the clauses of the last times of lying down on a face and of tipping over its rim."""
-    clauses = list[Clause]()
-    for kind, name in ((EventKind.LIES_DOWN, "lies_down"), (EventKind.TIPS, "tips_over")):
-        times = [event.time for event in facts.events if event.kind is kind]
-        if times:
-            clauses.append(Clause(name, {"time": times[-1]}, "motion"))
+    """Return the clauses of rocking on the rim, of lying down on a face and of tipping over it.
+
+    Of many the first and the last are told.
+    """
+    names = {EventKind.LIES_DOWN: "lies_down", EventKind.TIPS: "tips_over"}
+    clauses = _rocking_on_rim(facts)
+    rocked = [clause.numbers["time"] for clause in clauses]
+    happened = [event for event in facts.events if event.kind in names and event.time not in rocked]
+    for number, event in enumerate(happened):
+        if min(number, len(happened) - 1 - number) < TOLD_AT_EITHER_END:
+            clauses.append(Clause(names[event.kind], {"time": event.time}, "motion"))
     return clauses
+
+
+def _rocking_on_rim(facts: Facts) -> list[Clause]:
+    """Return the clause that a body rocks from one side of its rim to the other until it lies."""
+    downs = [event for event in facts.events if event.kind is EventKind.LIES_DOWN]
+    landings = [event.time for event in facts.events if event.kind is EventKind.TOUCHDOWN]
+    if not downs or any(event.kind is EventKind.DOUBLE_CONTACT for event in facts.events):
+        return []
+    struck = [
+        event
+        for event in facts.events
+        if event.kind is EventKind.IMPACT
+        and 0.0 < event.time <= downs[0].time
+        and event.time not in landings
+        and event.surface == downs[0].surface
+    ]
+    if len(struck) < 2:
+        return []
+    return [Clause("rocks_on_rim", {"count": len(struck), "time": downs[0].time}, "motion")]
 
 
 def _is_launched_flat(problem: Problem) -> bool:
