@@ -355,12 +355,14 @@ def fields_in(path: Path | str) -> dict[str, Any]:
 
     Raises `FileTrouble` if the file cannot be read, and `InvalidInput` if it is not TOML or JSON.
     """
-    if Path(path).suffix.lower() in PROFILES:
+    place = path_of(path)
+    suffix = place.suffix.lower()
+    if suffix in PROFILES:
         accepted = "a problem in TOML or JSON, which tippetop body makes of a profile with --toml"
-        raise InvalidInput("problem", str(path), accepted)
-    text = read_text(path, "a problem in TOML or JSON")
-    parse = parse_json if Path(path).suffix.lower() == ".json" else parse_toml
-    return parse(text, "problem", Path(path).name)
+        raise InvalidInput("problem", str(place), accepted)
+    text = read_text(place, "a problem in TOML or JSON")
+    parse = parse_json if suffix == ".json" else parse_toml
+    return parse(text, "problem", place.name)
 
 
 def top_of(problem: Problem, functions: Functions = math) -> Top:
