@@ -134,6 +134,12 @@ def test_a_surface_has_no_thresholds_where_another_touches(tmp_path):
     assert "e+" not in said
 
 
+def test_a_data_set_makes_no_folder_around_it(tmp_path):
+    told = misused(tmp_path, "dataset", "--out", "missing/runs.zarr", "--count", "1")
+    assert told == ("tippetop: missing/runs.zarr cannot be written: No such file or directory\n")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_parameter_of_a_distribution_stands_once(tmp_path):
     draw = "launch.spin=norm:loc=150:loc=100:scale=5"
     told = misused(tmp_path, "sweep", "--draw", draw, "--count", "3")

@@ -7,11 +7,15 @@ import launches
 import tippetop as tt
 from campaigns import seeds
 from tippetop.fit.dual import Dual, duals, parts_of
+from tippetop.fit.linearized_run import LinearizedRun
+from tippetop.fit.problem_numbers import Direction
+from tippetop.fit.sensitivities import _differences
 from tippetop.fit.variational import followed
 from tippetop.graph.derivatives import derivatives
 from tippetop.graph.recording import record
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Motion
+from tippetop.problem.presets import report_problem
 
 CLOSED = 1e-9
 """Relative error of derivatives that have a closed form."""
@@ -402,3 +406,18 @@ def evaluated(recorded, y, p):
             "pow": lambda o: o[0] ** o[1],
         }[node.name](operands)
     return [values[output.place] for output in recorded.outputs]
+
+
+def test_runs_beside_may_differ_by_a_sample_and_an_event():
+    """Where derivatives end, one of both may reach further; what both have is compared."""
+    problem = report_problem(spin=175.0)
+    fields = [Direction.of(problem, "launch.spin")]
+    run = LinearizedRun(problem, 6.0, np.linspace(0.0, 6.0, 5), fields)
+    whole = run.read()
+    assert len(whole.variables["event_time"]) > 1
+    cut = whole.run.isel(time=slice(-1), event=slice(-1))
+    shorter = whole._replace(run=cut, states=whole.states[:-1])
+    slopes = _differences([whole, shorter], 1.0, np.inf)
+    for name in ("tilt", "event_time", "axis"):
+        assert len(slopes[name]) == len(whole.variables[name]) - 1
+        np.testing.assert_array_equal(slopes[name], 0.0)

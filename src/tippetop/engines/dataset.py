@@ -123,6 +123,7 @@ def write_dataset(
     times = np.linspace(0.0, float(seconds), samples)
     beside = place.with_name(f".{place.name}.part")
     with in_words(place, "written"):
+        place.parent.stat()  # a folder that is missing may be a mistyped one
         shutil.rmtree(beside, ignore_errors=True)
         try:
             _fill(beside, count, seed, times, workers or processors(), progress)

@@ -127,13 +127,17 @@ def _differences(ends: Sequence[RunReading], apart: float, until: float) -> dict
         high, low = up[name], down[name]
         if high.dtype.kind != "f":
             continue
+        if high.dims:
+            # Where derivatives end, one of the runs may have a sample or an event more.
+            common = min(len(high), len(low))
+            high, low = high[:common], low[:common]
         slope: Array = (high.values - low.values) / apart
         if variable.units == "rad":
             slope = (np.remainder(slope * apart + 0.5 * TURN, TURN) - 0.5 * TURN) / apart
         if "time" in high.dims:
-            slope[up["time"].values >= until] = np.nan
+            slope[up["time"].values[: len(slope)] >= until] = np.nan
         elif "event" in high.dims:
-            slope[up["event_time"].values >= until] = np.nan
+            slope[up["event_time"].values[: len(slope)] >= until] = np.nan
         elif np.isfinite(until):
             slope = np.full_like(slope, np.nan)
         slopes[name] = slope
