@@ -12,7 +12,7 @@ from browsing import DROP, Visit
 
 Lab = Callable[..., Visit]
 
-CASES = 100
+CASES = 40
 """Random links, and damaged files, that are tried."""
 
 PANEL = "() => document.querySelector('.panel-body').innerText.trim().length"
