@@ -63,7 +63,7 @@ UNITS = {"tilt": "rad", "rate": "rad s-1", "radius": "m", "spin": "rad s-1"}
 """The numbers of a steady motion that can be asked for, and their units."""
 
 
-class Motion(NamedTuple):
+class SteadyMotion(NamedTuple):
     """Tilt, rad, rate about the vertical and axial spin, rad/s, of steady rolling."""
 
     tilt: float
@@ -105,7 +105,7 @@ class Levers(NamedTuple):
         """Return the moment that is not balanced at a rate and a spin."""
         return rate * spin * self.spinning - rate * rate * self.turning - self.weight
 
-    def radius(self, motion: Motion) -> Scalar:
+    def radius(self, motion: SteadyMotion) -> Scalar:
         """Return the radius of the circle, of whichever sign; infinite where the body rolls
         straight.
         """
@@ -175,7 +175,7 @@ def _checked(numbers: dict[str, Any]) -> dict[str, float]:
     return asked
 
 
-def _motions(asked: dict[str, float], top: Top) -> Iterator[Motion]:
+def _motions(asked: dict[str, float], top: Top) -> Iterator[SteadyMotion]:
     """Yield the steady motions on a surface with two of the four numbers, SI."""
     units, scaled = natural_units(top), natural(top)
     time, length = float(units.time), float(units.length)
@@ -184,7 +184,7 @@ def _motions(asked: dict[str, float], top: Top) -> Iterator[Motion]:
     for radius in _signed(natural_numbers.get("radius")):
         for motion in _scaled_motions({**natural_numbers, **radius}, scaled):
             if max(abs(motion.rate), abs(motion.spin)) < FASTEST:
-                yield Motion(motion.tilt, motion.rate / time, motion.spin / time)
+                yield SteadyMotion(motion.tilt, motion.rate / time, motion.spin / time)
 
 
 def _signed(radius: float | None) -> tuple[dict[str, float], ...]:
@@ -194,7 +194,7 @@ def _signed(radius: float | None) -> tuple[dict[str, float], ...]:
     return ({"radius": radius}, {"radius": -radius})[: 1 if radius == 0.0 else 2]
 
 
-def _scaled_motions(asked: dict[str, float], top: Top) -> Iterator[Motion]:
+def _scaled_motions(asked: dict[str, float], top: Top) -> Iterator[SteadyMotion]:
     """Yield the steady motions with two of the four numbers, natural units."""
     names = set(asked)
     tilt, rate, spin = (asked.get(name, math.nan) for name in ("tilt", "rate", "spin"))
@@ -208,25 +208,27 @@ def _scaled_motions(asked: dict[str, float], top: Top) -> Iterator[Motion]:
         yield from _on_circle(tilt, radius, top)
     elif names == {"rate", "spin"}:
         for at in _tilts(lambda levers: levers.imbalance(rate, spin), top):
-            yield Motion(at, rate, spin)
+            yield SteadyMotion(at, rate, spin)
     elif names == {"rate", "radius"}:
         for at in _tilts(lambda levers: _circle_at_rate(levers, rate, radius), top, on_spot):
             yield _at_rate(at, rate, top)
     else:
         for at in _tilts(lambda levers: _circle_at_spin(levers, spin, radius), top, 2 * on_spot):
             levers = _levers(at, top)
-            yield Motion(at, spin * levers.across / (levers.along - radius / levers.sine), spin)
+            yield SteadyMotion(
+                at, spin * levers.across / (levers.along - radius / levers.sine), spin
+            )
 
 
-def _at_rate(tilt: float, rate: float, top: Top) -> Motion:
+def _at_rate(tilt: float, rate: float, top: Top) -> SteadyMotion:
     """Return the steady motion at a tilt with a rate other than 0."""
     levers = _levers(tilt, top)
-    return Motion(
+    return SteadyMotion(
         tilt, rate, (levers.weight + rate * rate * levers.turning) / (rate * levers.spinning)
     )
 
 
-def _at_spin(tilt: float, spin: float, top: Top) -> Iterator[Motion]:
+def _at_spin(tilt: float, spin: float, top: Top) -> Iterator[SteadyMotion]:
     """Yield the slow and the fast steady motion at a tilt with a spin."""
     levers = _levers(tilt, top)
     weight = levers.weight if abs(levers.weight) > ROUNDING else 0.0
@@ -237,12 +239,12 @@ def _at_spin(tilt: float, spin: float, top: Top) -> Iterator[Motion]:
     larger = 0.5 * (driving + math.copysign(math.sqrt(square), driving))
     if larger == 0.0:
         return
-    yield Motion(tilt, weight / larger, spin)
+    yield SteadyMotion(tilt, weight / larger, spin)
     if abs(levers.turning) > ROUNDING:
-        yield Motion(tilt, larger / levers.turning, spin)
+        yield SteadyMotion(tilt, larger / levers.turning, spin)
 
 
-def _on_circle(tilt: float, radius: float, top: Top) -> Iterator[Motion]:
+def _on_circle(tilt: float, radius: float, top: Top) -> Iterator[SteadyMotion]:
     """Yield the steady motion at a tilt with phi' > 0 on a circle; that with phi' < 0 mirrors
     it.
     """
@@ -257,7 +259,7 @@ def _on_circle(tilt: float, radius: float, top: Top) -> Iterator[Motion]:
     moment = ratio * levers.spinning - levers.turning
     if levers.weight * moment > 0.0:
         rate = math.sqrt(levers.weight / moment)
-        yield Motion(tilt, rate, ratio * rate)
+        yield SteadyMotion(tilt, rate, ratio * rate)
 
 
 def _circle_at_rate(levers: Levers, rate: float, radius: float) -> float:
@@ -306,7 +308,7 @@ def _is_lowest(tilt: float, top: Top) -> bool:
     return len(touching) == 1
 
 
-def _state(motion: Motion, top: Top) -> SteadyState[float]:
+def _state(motion: SteadyMotion, top: Top) -> SteadyState[float]:
     """Return a steady motion with its numbers, SI."""
     angles = Angles(motion.tilt, 0.0, 0.0, motion.rate, motion.spin, (0.0, 0.0))
     state = on_table(state_from_angles(angles, top, math), top)
@@ -384,7 +386,7 @@ def straight_spin(top: Top, tilt: float) -> float | None:
 
 def _straight_eigenvalue(tilt: float, spin: float, top: Top) -> complex:
     """Return an eigenvalue of straight rolling, 1/s."""
-    state = _state(Motion(tilt, 0.0, spin), top)
+    state = _state(SteadyMotion(tilt, 0.0, spin), top)
     return complex(rolling_spectrum(state, top).eigenvalues[0])
 
 
