@@ -18,8 +18,8 @@ from launches import TOLERANCE, in_javascript
 from tippetop.cli.commands import app
 from tippetop.export.bundle import player_packed
 from tippetop.export.track import pack_run, unpack_header
+from tippetop.results.account_text import Account, describe
 from tippetop.results.catalogue import LASTING
-from tippetop.results.description import Account, describe
 from tippetop.theory.prediction import predict
 from tippetop.theory.thresholds import critical_spins
 

@@ -14,11 +14,11 @@ from test_dry_campaign import LAWS, ordinary
 from test_painleve_on_two import drawn
 from tippetop.contact import slip_onset
 from tippetop.contact.automaton import Automaton
+from tippetop.contact.closed_pair import Before, ClosedPair
 from tippetop.contact.contact_mode import mode_on_two
 from tippetop.contact.impact import impact
 from tippetop.contact.mode import BOTH, BROKEN, EventKind, Status
 from tippetop.contact.slip_onset import UNSEEN
-from tippetop.contact.two_closed import Before, TwoClosed
 from tippetop.mechanics.contacts import pair_resolver
 from tippetop.mechanics.contacts.slip_direction import Resisted, directions
 from tippetop.mechanics.invariants import energy
@@ -49,7 +49,7 @@ SITES: list[tuple[str, tt.Problem, str]] = [
     ("collision.impact", THROWN, "The impulse of the impact"),
     ("automaton.answers", SLIPPERY, "The force that holds the contact"),
     ("automaton.find_onset", STICKS_AND_SLIPS, "The direction in which slip begins"),
-    ("two_closed.TwoClosed.answers", TWO, "The forces on two surfaces that touch"),
+    ("closed_pair.ClosedPair.answers", TWO, "The forces on two surfaces that touch"),
 ]
 
 
@@ -178,14 +178,14 @@ def test_at_the_singular_point_of_a_jam_it_is_open_what_follows() -> None:
     assert "whether it does or is struck rigid bodies do not tell" in after.detail
 
 
-def drawn_contacts(seed: int, law: Any = None, resistance: float | None = None) -> TwoClosed:
+def drawn_contacts(seed: int, law: Any = None, resistance: float | None = None) -> ClosedPair:
     """A slender body on two spheres, of which the first sticks and the second slips if it can."""
     case = drawn(np.random.default_rng(seed))
     assert case is not None
     (first, _), state = case
     rolling = None if resistance is None else RollingResistance(resistance)
     top = first.altered(rolling_resistance=rolling, friction=law or first.friction)
-    return TwoClosed.of(
+    return ClosedPair.of(
         state, (top.body.contacts[0], top.body.contacts[1]), 0.0, (True, law is not None)
     )
 

@@ -8,13 +8,13 @@ import pytest
 from scipy.optimize import brentq
 
 from tippetop.contact.automaton import Automaton, opens_by_zero
+from tippetop.contact.closed_pair import Before
 from tippetop.contact.contact_mode import ContactMode, sliding_on_two
 from tippetop.contact.flight import Flight
 from tippetop.contact.guards import OPENING, SLIP
 from tippetop.contact.impact import begins_without_approach
 from tippetop.contact.mode import EventKind, ModeEnd, Status, Transition
 from tippetop.contact.trajectory import Trajectory
-from tippetop.contact.two_closed import Before
 from tippetop.integrators import make_integrator
 from tippetop.mechanics.contacts.branches import off_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint

@@ -22,7 +22,7 @@ from test_sticking_on_two import (
     lying,
     times,
 )
-from tippetop.contact.two_closed import rolling_of
+from tippetop.contact.closed_pair import rolling_of
 from tippetop.mechanics.contacts import pair_resolver
 from tippetop.mechanics.contacts.contact_forces import forces_on_two
 from tippetop.mechanics.contacts.contact_point import ContactPoint, contact_points

@@ -20,8 +20,8 @@ from tippetop.mechanics.contacts.contact_point import contact_points
 from tippetop.mechanics.contacts.pair import turning_along
 from tippetop.mechanics.laws.friction import Traction
 from tippetop.mechanics.motion import angular_velocity
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.top import natural, natural_state, natural_units
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 from tippetop.problem.problem import top_of
 

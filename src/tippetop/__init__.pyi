@@ -12,9 +12,9 @@ from .export.solid import write_solid as write_solid
 from .export.tables import write_csv as write_csv
 from .export.tables import write_parquet as write_parquet
 from .figures.plotting import plot as plot
-from .fit.fitted import Comparison as Comparison
-from .fit.fitted import FitResult as FitResult
-from .fit.fitted import compare_fits as compare_fits
+from .fit.fit_result import Comparison as Comparison
+from .fit.fit_result import FitResult as FitResult
+from .fit.fit_result import compare_fits as compare_fits
 from .fit.improve import ImprovedTop as ImprovedTop
 from .fit.improve import improve as improve
 from .fit.least_squares import fit as fit
@@ -57,10 +57,10 @@ from .problem.shapes import Shape as Shape
 from .problem.shapes import Sphere as Sphere
 from .problem.shapes import Spheroid as Spheroid
 from .problem.table import Table as Table
+from .results.account_text import Account as Account
+from .results.account_text import describe as describe
 from .results.catalogue import Outcome as Outcome
 from .results.dataframes import to_dataframe as to_dataframe
-from .results.description import Account as Account
-from .results.description import describe as describe
 from .results.netcdf import read_run as read_run
 from .results.netcdf import write_run as write_run
 from .results.run_solution import RunSolution as RunSolution

@@ -39,10 +39,10 @@ from tippetop.mechanics.motion import (
     sliding_contact,
     sliding_rates,
 )
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surfaces.surface import Surface
 from tippetop.mechanics.top import Kind, Top
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector, power
 from tippetop.problem.contact_rules import Contact
 from tippetop.problem.frictions import Friction

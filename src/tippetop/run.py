@@ -14,8 +14,8 @@ from tippetop.contact.trajectory import MODE_LIMIT, STEP_LIMIT, Trajectory, requ
 from tippetop.graph.own_parts import require_recordable
 from tippetop.integrators import Integrator, make_integrator
 from tippetop.mechanics.invariants import energy
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import State
-from tippetop.mechanics.units import Units
 from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem, top_of
 from tippetop.results.catalogue import Outcome

@@ -5,7 +5,7 @@ import pytest
 
 import tippetop as tt
 from campaigns import seed_ranges
-from tippetop.fit.fitted import CLEAR
+from tippetop.fit.fit_result import CLEAR
 from tippetop.fit.residual_statistics import exceeds_noise
 
 PIXEL, BLUR, LOST = 2e-4, 0.5, 0.1

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 import tippetop as tt
 from tippetop.cli.commands import app
-from tippetop.fit.fitted import search_of
+from tippetop.fit.fit_result import search_of
 from tippetop.fit.model import Model
 from tippetop.fit.residual_statistics import are_correlated, correlation_time
 from tippetop.fit.search import Minimum, Search

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tippetop as tt
-from tippetop.results.told_times import digits_left
+from tippetop.results.time_digits import digits_left
 
 
 def test_the_uncertainty_of_a_smooth_time_is_its_derivative_times_the_change():

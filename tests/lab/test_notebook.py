@@ -16,7 +16,7 @@ pytest.importorskip(
 
 from tippetop.export.bundle import built
 from tippetop.lab.notebook import view
-from tippetop.results.description import describe
+from tippetop.results.account_text import describe
 
 NOTEBOOK = Path(__file__).parents[2] / "notebooks" / "tippe_top.ipynb"
 

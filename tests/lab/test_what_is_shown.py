@@ -12,7 +12,7 @@ import tippetop as tt
 from browsing import Visit
 from bundled import found_in_the_page
 from tippetop.results.account import Clause
-from tippetop.results.description import phrase
+from tippetop.results.account_text import phrase
 
 Lab = Callable[..., Visit]
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from strategies import numbers
 from tippetop.mechanics.laws.friction import RegularizedCoulombLaw, ViscousLaw
-from tippetop.mechanics.units import Units
+from tippetop.mechanics.natural_units import Units
 
 COEFFICIENTS = numbers(0.01, 2.0)
 SLIPS = st.tuples(numbers(-2.0, 2.0), numbers(-2.0, 2.0)).filter(

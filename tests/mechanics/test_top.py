@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from strategies import angles, numbers, slides, tops
 from tippetop.mechanics.invariants import energy, jellett
 from tippetop.mechanics.motion import on_table, sliding_contact, sliding_rates
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import natural, natural_units
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.view import state_from_angles
 
 

@@ -21,12 +21,12 @@ from tippetop.mechanics.motion import along_table, on_table, sliding_contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top, natural_state, natural_units
+from tippetop.sweeps.axis_extremes import DOWN, UP, TipMotion
 from tippetop.sweeps.flight_steps import GIVEN, LEFT, VANISHING, WANTED, flight_steps
 from tippetop.sweeps.flights import fly_all, look_closer
 from tippetop.sweeps.flights import slides as goes_on
 from tippetop.sweeps.impacts import collide
 from tippetop.sweeps.launch_arrays import branched, single
-from tippetop.sweeps.tip_extremes import DOWN, UP, TipMotion
 from tumbling import EDGES, Tumbling
 
 VISCOUS = tops(friction_laws=(ViscousLaw,))

@@ -11,12 +11,12 @@ from tippetop.integrators.polynomials import Polynomials
 from tippetop.problem.frictions import ContensouFriction
 from tippetop.problem.presets import report_problem
 from tippetop.sweeps import Axis, Product, Sweep
+from tippetop.sweeps.axis_extremes import DOWN, FORCE, UP, TipMotion
 from tippetop.sweeps.cells import cells_of
 from tippetop.sweeps.ensemble import swept_motion
 from tippetop.sweeps.lane_arrays import Slots
 from tippetop.sweeps.polynomial_arcs import Arcs, arcs
 from tippetop.sweeps.taylor_stepper import stepper
-from tippetop.sweeps.tip_extremes import DOWN, FORCE, UP, TipMotion
 
 COUNT = 2000
 

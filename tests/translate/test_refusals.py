@@ -8,8 +8,8 @@ import re
 import pytest
 
 from tippetop.translate.definitions import Definitions
-from tippetop.translate.program import Program
 from tippetop.translate.refusal import Untranslatable
+from tippetop.translate.symbols import SymbolTable
 
 HEAD = """
 import math
@@ -151,7 +151,7 @@ def refusal_of(text):
     with pytest.raises(Untranslatable) as refusal:
         list(
             Definitions(
-                Program({"sample": text}, {"sample": "src/sample.py"}), "sample"
+                SymbolTable({"sample": text}, {"sample": "src/sample.py"}), "sample"
             ).module_lines()
         )
     return str(refusal.value)
@@ -226,6 +226,6 @@ def test_a_declaration_that_does_not_hold_is_refused(text, line, words):
 def test_names_of_skipped_modules_are_refused_where_they_are_used():
     skipped = "# translate module: skip\ndef f(): pass\n"
     user = "from other import f\ndef g(): return f()\n"
-    program = Program({"other": skipped, "user": user})
+    program = SymbolTable({"other": skipped, "user": user})
     with pytest.raises(Untranslatable, match=r"user:2: .*'f'"):
         list(Definitions(program, "user").module_lines())

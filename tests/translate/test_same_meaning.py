@@ -10,7 +10,7 @@ import pytest
 from node import printed
 from tippetop.page_engine import HERE
 from tippetop.translate.definitions import Definitions
-from tippetop.translate.program import Program
+from tippetop.translate.symbols import SymbolTable
 
 HEAD = """
 import math
@@ -297,7 +297,7 @@ def results():
     space = {"__name__": "snippets"}
     exec(compile(source, "snippets", "exec", dont_inherit=True), space)
     lines = [f'import * as py from "{(HERE / "python.js").as_uri()}";']
-    lines += Definitions(Program({"snippets": source}), "snippets").module_lines()
+    lines += Definitions(SymbolTable({"snippets": source}), "snippets").module_lines()
     lines += [
         f"""
         try {{ console.log(JSON.stringify(snippet_{number}())); }}

@@ -9,8 +9,8 @@ from node import NODE
 from tippetop.page_engine import HERE
 from tippetop.translate.definitions import Definitions
 from tippetop.translate.layout import WIDTH, laid_out
-from tippetop.translate.program import Program
 from tippetop.translate.refusal import Untranslatable
+from tippetop.translate.symbols import SymbolTable
 
 MODULE = """
 import math
@@ -213,7 +213,7 @@ def both(tmp_path_factory):
     """What the functions return in Python, and in JavaScript."""
     space = {"__name__": "sample"}
     exec(compile(MODULE, "sample", "exec"), space)
-    program = Program({"sample": MODULE})
+    program = SymbolTable({"sample": MODULE})
     lines = list(Definitions(program, "sample").module_lines())
     lines.append(f"console.log(JSON.stringify([{', '.join(f'{name}()' for name in TESTS)}]));")
     found, wrong = run(lines, tmp_path_factory.mktemp("translated"))
@@ -243,7 +243,7 @@ def numbers(x=3.0):
 
 
 def test_arithmetic_of_numbers_alone_is_that_of_javascript_and_means_the_same(tmp_path):
-    program, space = Program({"sample": PLAIN}), {}
+    program, space = SymbolTable({"sample": PLAIN}), {}
     exec(PLAIN, space)
     lines = list(Definitions(program, "sample").module_lines())
     assert "2.0 / 4.0 - (x - (1.0 - x))" in "".join(lines)
@@ -257,9 +257,9 @@ def test_arithmetic_of_numbers_alone_is_that_of_javascript_and_means_the_same(tm
 def test_the_runtimes_functions_are_called_where_a_module_declares_so():
     size = "def size(x):\n    return x\n"
     two = "from one import size\ndef f(x):\n    return size(x)\n"
-    lines = Definitions(Program({"one": size, "two": two}), "two").module_lines()
+    lines = Definitions(SymbolTable({"one": size, "two": two}), "two").module_lines()
     assert "return size(x);" in "".join(lines)
-    program = Program({"one": f"# translate: runtime\n{size}", "two": two})
+    program = SymbolTable({"one": f"# translate: runtime\n{size}", "two": two})
     assert "return py.size(x);" in "".join(Definitions(program, "two").module_lines())
 
 
@@ -270,8 +270,8 @@ def test_a_name_written_by_hand_is_not_confused_with_another_modules():
         "two": "from by_hand import size\n",
     }
     with pytest.raises(Untranslatable, match="two:1: size of by_hand"):
-        Program(sources)
-    program = Program({name: sources[name] for name in ("by_hand", "two", "one")})
+        SymbolTable(sources)
+    program = SymbolTable({name: sources[name] for name in ("by_hand", "two", "one")})
     assert program.names["one", "size"] != program.names["two", "size"]
 
 

@@ -23,7 +23,7 @@ from tippetop.support.files import place_for, require_ending
 from tippetop.support.progress_bar import progress_bar
 
 if TYPE_CHECKING:
-    from tippetop.fit.fitted import FitResult
+    from tippetop.fit.fit_result import FitResult
     from tippetop.fit.search import FitProgress
 
 

@@ -23,7 +23,7 @@ from tippetop.cli.options import (
 from tippetop.cli.terminal import facts, show, show_json
 from tippetop.problem.problem import top_of
 from tippetop.results.sampling import DEFAULT_SAMPLES, sample_count
-from tippetop.results.told_times import digits_left
+from tippetop.results.time_digits import digits_left
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import place_for, refuse_ending_of_others, require_ending
 from tippetop.support.progress_bar import progress_bar

@@ -6,7 +6,7 @@ functions. `slip_onset` and `slip_end` are transforms of a contact mode: the fir
 moments of one of its velocities, by `slip_phase` and `slip_end_motion`. `flight` is free flight,
 and `face_mode` the motion on a flat face, over whose rim a body tips by `tip_onset`. `automaton`
 decides which mode follows: it asks `touching`, `collision`, `soonest_end`, `settling_flat` (how a
-disk comes to lie flat) and `two_closed` (the resolver of two contacts), and it alone names next
+disk comes to lie flat) and `closed_pair` (the resolver of two contacts), and it alone names next
 modes. `impact` is the one process of every impact, with the equations of `impact_motion`, and
 `face_impact` that of a body that lands flat.
 `trajectory` follows one launch; `readings` and `block` read results off modes.

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 from tippetop.contact.closed_contacts import ClosedContacts
+from tippetop.contact.closed_pair import Before, ClosedPair, rolling_of
 from tippetop.contact.collision import SLOWEST_REBOUND, collision
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_on_two
 from tippetop.contact.face_impact import LEAN, NOT_TIPPED, SLOWEST_ON_FACE, face_impact
@@ -63,7 +64,6 @@ from tippetop.contact.touching import (
     stays_closed,
 )
 from tippetop.contact.transient import AT_REST, SLIP_AND_ROLLING, Resting, TransientMode
-from tippetop.contact.two_closed import Before, TwoClosed, rolling_of
 from tippetop.mechanics.contacts.branches import (
     off_branch,
     on_branch,
@@ -72,7 +72,7 @@ from tippetop.mechanics.contacts.branches import (
 )
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import is_set_valued
-from tippetop.mechanics.contacts.onset_forces import Onset, find_onset, resolve_onset
+from tippetop.mechanics.contacts.onset_forces import Onset, contact_after_end, find_onset
 from tippetop.mechanics.contacts.pair import Tops, slips_of, without_tilting
 from tippetop.mechanics.contacts.pair_resolver import Resolution, rolling_direction
 from tippetop.mechanics.contacts.resolver import Answer, answers
@@ -263,7 +263,7 @@ class Automaton:
         contact, state = off_branch(mode.top), end.state
         if mode.is_single:
             return self.jammed(contact, time, state) or self._strike(contact, time, state)
-        jammed = TwoClosed.of(state, mode.tops, mode.rolls).jammed or contact
+        jammed = ClosedPair.of(state, mode.tops, mode.rolls).jammed or contact
         return self.inconsistent(jammed, time, on_table(along_table(state), jammed), ())
 
     def _on_other_branch(self, ended: Mode, end: ModeEnd, _: float) -> Transition:
@@ -441,7 +441,7 @@ class Automaton:
         rolling = None if ended[1] else point.turning[:2]
         try:
             if self.pulls:
-                consistent = [Answer((0,), *resolve_onset(point, slip, rolling))]
+                consistent = [Answer((0,), *contact_after_end(point, slip, rolling))]
             else:
                 consistent = answers((point,), (slip,), rolling)
         except ArithmeticError as error:
@@ -919,7 +919,7 @@ class Automaton:
         begins then: the force on both is finite and stable, and they stay closed where that is
         consistent. Where no impact begins the run ends if each contact can carry the body alone.
         """
-        contacts = TwoClosed.of(state, tops, rolls, ended)
+        contacts = ClosedPair.of(state, tops, rolls, ended)
         try:
             consistent = contacts.answers()
             jammed = contacts.jammed if len(consistent) != 1 else None
@@ -954,7 +954,7 @@ class Automaton:
         can, or both do (-1).
         """
         first, second = mode.sticks
-        contacts = TwoClosed.of(state, mode.tops, mode.rolls, (first, second))
+        contacts = ClosedPair.of(state, mode.tops, mode.rolls, (first, second))
         try:
             resolved = contacts.slipping(None if contact < 0 else contact)
         except ArithmeticError as error:
@@ -963,7 +963,7 @@ class Automaton:
         events = contacts.changes(time, resolved, Before.of(mode))
         return replace(self._slip_begins(contacts, resolved), events=events)
 
-    def _mode_on_two(self, contacts: TwoClosed, resolved: Resolution) -> Transition:
+    def _mode_on_two(self, contacts: ClosedPair, resolved: Resolution) -> Transition:
         """Return the mode in which both contacts go on."""
         if resolved.rolls != contacts.rolls:
             return self._mode_on_two(replace(contacts, rolls=resolved.rolls), resolved)
@@ -994,7 +994,7 @@ class Automaton:
         sense = 1.0 if zeta >= 0.0 else -1.0
         return mode_on_two(tops, rolls, (True, False), sense=sense)
 
-    def _slip_begins(self, contacts: TwoClosed, resolved: Resolution) -> Transition:
+    def _slip_begins(self, contacts: ClosedPair, resolved: Resolution) -> Transition:
         """Return the mode in which slip begins on two contacts."""
         begins: Slip = resolved.begins or ()
         if any(resolved.sticks):

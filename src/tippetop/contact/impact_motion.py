@@ -34,7 +34,7 @@ from tippetop.mechanics.impacts.unit_impulse import (
 )
 from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.laws.friction import FrictionLaw
-from tippetop.mechanics.units import Units
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.vectors import Horizontal, Row, Scalar
 
 COMPRESSED, SPENT, RETURNED = "compressed", "spent", "returned"

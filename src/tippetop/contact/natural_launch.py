@@ -11,9 +11,9 @@ from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.flight import Flight
 from tippetop.contact.mode import Mode, Transition
 from tippetop.mechanics.motion import along_table
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top, natural, natural_state, natural_units
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.problem.contact_rules import Contact
 from tippetop.problem.problem import Problem, top_of

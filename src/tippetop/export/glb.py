@@ -15,8 +15,8 @@ from tippetop.export.poses import poses_at
 from tippetop.figures.appearance import SCENES, ToyPart, size, toy_parts
 from tippetop.problem.bodies import Body
 from tippetop.problem.problem import Problem
+from tippetop.results.account_text import describe
 from tippetop.results.dataset import require_run
-from tippetop.results.description import describe
 from tippetop.results.samples import continuous
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import written_beside

@@ -16,8 +16,8 @@ from tippetop.export.raycast import fine_path, picture, view_of
 from tippetop.figures.style import INK
 from tippetop.figures.toy import Toy
 from tippetop.problem.problem import Problem
+from tippetop.results.account_text import describe
 from tippetop.results.dataset import require_run
-from tippetop.results.description import describe
 from tippetop.support.errors import FileTrouble, InvalidInput, Unavailable, is_number, is_whole
 from tippetop.support.files import path_of, place_for, require_ending, written_beside
 from tippetop.support.validation import require_callback

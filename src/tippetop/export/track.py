@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tippetop.export.poses import contact_path
 from tippetop.figures.appearance import SCENES, size, toy_parts
 from tippetop.problem.problem import Problem
-from tippetop.results.description import describe
+from tippetop.results.account_text import describe
 from tippetop.results.flags import encoded
 
 Array = NDArray[np.float64]

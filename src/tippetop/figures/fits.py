@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tippetop.figures.style import CONVERGED, INK, MUTED, WIDTH, ShownFigure, house_style
-from tippetop.fit.fitted import FitResult
+from tippetop.fit.fit_result import FitResult
 from tippetop.integrators.base import Array
 from tippetop.support.suggestions import not_one_of
 

@@ -19,7 +19,7 @@ from tippetop.figures.style import (
     house_style,
     pi_ticks,
 )
-from tippetop.fit.fitted import Comparison, FitResult
+from tippetop.fit.fit_result import Comparison, FitResult
 from tippetop.results.dataset import is_sweep, require_run
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.prediction import Prediction

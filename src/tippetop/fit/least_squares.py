@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from tippetop.fit.fitted import FitResult, result_of
+from tippetop.fit.fit_result import FitResult, result_of
 from tippetop.fit.joint_model import JointModel
 from tippetop.fit.measurement import Measurement, read_measurement
 from tippetop.fit.model import Model

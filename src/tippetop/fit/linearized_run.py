@@ -41,9 +41,9 @@ from tippetop.fit.variational import TOGETHER, followed
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Array, Guard
 from tippetop.integrators.dense import DenseSolution
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind, contact_numbers, contacts_with
-from tippetop.mechanics.units import Units
 from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import SAMPLED
 from tippetop.results.observables import Recorder

@@ -7,9 +7,9 @@ import numpy as np
 
 from tippetop.contact.natural_launch import NaturalLaunch
 from tippetop.integrators.base import Array
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Kind, Top, natural_units
-from tippetop.mechanics.units import Units
 from tippetop.problem.problem import Problem, top_of
 from tippetop.support.errors import InvalidInput, is_number
 from tippetop.support.units import exponents_of

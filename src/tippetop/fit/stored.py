@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tippetop.fit.fitted import FitResult, search_of
+from tippetop.fit.fit_result import FitResult, search_of
 from tippetop.fit.measurement import Measurement
 from tippetop.fit.model import Model
 from tippetop.fit.observations import Camera, EventTimes, SpinRate, Variables

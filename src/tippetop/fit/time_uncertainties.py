@@ -6,9 +6,9 @@ import xarray as xr
 
 from tippetop.problem.implausible import Implausible
 from tippetop.problem.problem import Problem
+from tippetop.results.account_text import facts_of
 from tippetop.results.dataset import require_run
-from tippetop.results.description import facts_of
-from tippetop.results.told_times import CHANGE, LONGER, MOVED, time_changes, told_times
+from tippetop.results.time_digits import CHANGE, LONGER, MOVED, account_times, time_changes
 from tippetop.run import simulate
 from tippetop.support.errors import InvalidInput, is_number
 
@@ -50,7 +50,7 @@ def time_uncertainties(run: xr.Dataset, change: float = CHANGE) -> dict[str, flo
     require_run(run)
     problem = Problem.from_json(run.attrs["problem"])
     facts = facts_of(run)
-    moved = dict.fromkeys(told_times(facts), 0.0)
+    moved = dict.fromkeys(account_times(facts), 0.0)
     end = float(run["end_time"])
     duration = end if run.attrs["status"] == "completed" else LONGER * end
     for fields in MOVED:

@@ -7,7 +7,7 @@ the table is z; gravity along it is `Top.gravity`. Impulses know nothing of the 
 
 from typing import NamedTuple
 
-from tippetop.mechanics.units import Units
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, dot, scale
 
 STILL = 1e-4

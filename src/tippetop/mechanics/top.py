@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 from tippetop.mechanics.field import FieldKind, OuterField
 from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.laws.friction import FrictionLaw, Traction
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull, lowest_number
 from tippetop.mechanics.surfaces.surface import Surface, kind_of
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector, add, scale
 
 NATURAL = Units(1.0, 1.0, 1.0)

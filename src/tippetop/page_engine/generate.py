@@ -17,8 +17,8 @@ from tippetop.page_engine import COMMAND, HERE
 from tippetop.page_engine.tables import tables
 from tippetop.translate.definitions import Definitions
 from tippetop.translate.layout import laid_out
-from tippetop.translate.program import Program
 from tippetop.translate.refusal import Untranslatable
+from tippetop.translate.symbols import SymbolTable
 
 ROOTS = (
     "tippetop.contact.natural_launch",
@@ -38,7 +38,7 @@ ROOTS = (
     "tippetop.results.metrics",
     "tippetop.results.samples",
     "tippetop.results.account",
-    "tippetop.results.told_times",
+    "tippetop.results.time_digits",
     "tippetop.results.sampling",
     "tippetop.results.monitor",
     "tippetop.contact.flights",
@@ -78,7 +78,7 @@ def translated(generated_files: Mapping[str, str]) -> str:
     generated_files
         Texts of generated modules that it imports, by their names.
     """
-    program = Program(*sources())
+    program = SymbolTable(*sources())
     lines = list[str]()
     for module in program.trees:
         lines += ["", f"// {module}"]

@@ -81,7 +81,7 @@ export function simulate(
  */
 export function timeDigits(problem, options) {
   const { facts, status, endTime } = simulate(problem, options);
-  const times = Object.fromEntries(m.told_times(facts).entries());
+  const times = Object.fromEntries(m.account_times(facts).entries());
   const most = Object.fromEntries(Object.keys(times).map((name) => [name, 0]));
   const duration = status.name === "completed" ? options.duration : m.LONGER * endTime;
   for (const fields of m.MOVED) {

@@ -4,8 +4,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.units import Units
 from tippetop.support.validation import NO_WORD, Quantity, Variant
 
 Fraction = Annotated[float, Field(ge=0, le=1), NO_WORD]

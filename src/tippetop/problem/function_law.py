@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import create_model
 
 from tippetop.mechanics.laws.friction import NO_TORQUE, FrictionLaw, Traction
-from tippetop.mechanics.units import Units
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 from tippetop.problem.frictions import Friction
 from tippetop.support.errors import Described, InvalidInput

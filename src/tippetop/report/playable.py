@@ -4,7 +4,7 @@ from tippetop.export.bundle import LOADER, packed, player_notices, player_packed
 from tippetop.export.track import pack_run
 from tippetop.problem.presets import report_problem
 from tippetop.report.experiments.runs import unilateral
-from tippetop.results.description import describe
+from tippetop.results.account_text import describe
 from tippetop.results.sampling import sample_count
 from tippetop.run import simulate
 from tippetop.support.errors import Unavailable

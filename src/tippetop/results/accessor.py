@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from tippetop.results.description import Account
+    from tippetop.results.account_text import Account
 
 WRITERS = {
     ".nc": "write_run",

@@ -1,7 +1,7 @@
 """Account of a run: its launch, motion and end as clauses with a name and numbers.
 
 `account_of` makes the clauses from the facts of a run and from the theory of its launch; it is
-translated for the page. `tippetop.results.description.describe` collects the facts of a run. The
+translated for the page. `tippetop.results.account_text.describe` collects the facts of a run. The
 texts of the clauses are in one catalogue per language (`account_en.json` here, the part "account"
 of `web/texts/de.json`).
 """

@@ -7,8 +7,8 @@ import numpy as np
 from tippetop.contact.natural_launch import NaturalLaunch
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import angular_velocity
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Vector, cross, dot, scale
 from tippetop.results.catalogue import SAMPLED
 from tippetop.results.samples import Samples, continuous, observe

@@ -17,8 +17,8 @@ from tippetop.contact.block import Block, in_blocks
 from tippetop.contact.mode import EventKind, Status, Transition
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators.base import Array
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import State
-from tippetop.mechanics.units import Units
 from tippetop.results.motion_state import MotionState, states_in
 from tippetop.support.errors import InvalidInput, is_number
 from tippetop.support.suggestions import not_one_of

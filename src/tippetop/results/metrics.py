@@ -18,10 +18,10 @@ from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import axial_spin
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import outer_height
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
 from tippetop.mechanics.view import axis_sine, precession_rate
 from tippetop.results.catalogue import LEANS_AT_LAUNCH, NEAR_FINAL, NEAR_POLE, RISE, Outcome

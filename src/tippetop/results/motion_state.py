@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from tippetop.contact.block import Block
 from tippetop.contact.readings import TOLD, Instants
 from tippetop.integrators.base import Array
-from tippetop.mechanics.units import Units
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import axis_sine
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from tippetop.contact.mode import Event
 from tippetop.contact.readings import Instants
 from tippetop.integrators.base import Array
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.quadratures import orientation
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, Vector, scale
 from tippetop.mechanics.view import axis_sine
 from tippetop.results.sums import RunSums

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from tippetop.results.account_text import describe
 from tippetop.results.catalogue import METRICS, MONITORS
 from tippetop.results.dataset import require_run
-from tippetop.results.description import describe
 
 
 def summarize(run: xr.Dataset) -> dict[str, Any]:

@@ -17,11 +17,11 @@ from tippetop.contact.natural_launch import automaton_of
 from tippetop.contact.trajectory import LONGEST_RUN
 from tippetop.integrators.base import Array
 from tippetop.mechanics.motion import along_table, sliding_contact
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import Hull, sizes
 from tippetop.mechanics.surfaces.surface import support_at
 from tippetop.mechanics.top import Top, natural_state, natural_units
-from tippetop.mechanics.units import Units
 from tippetop.problem.contact_rules import Contact
 from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import Fault

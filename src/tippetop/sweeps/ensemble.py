@@ -13,11 +13,11 @@ from tippetop.contact.mode import Status
 from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.motion import on_table, sliding_contact
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.quadratures import resistance_powers
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.hull import lowest_gap
 from tippetop.mechanics.top import Kind
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar, length
 from tippetop.results.catalogue import Fault, Outcome
 from tippetop.results.metrics import STATUSES, Ends, metrics, outcomes_of, settled_band
@@ -30,7 +30,7 @@ from tippetop.sweeps.definition import EVENTS, Sweep
 from tippetop.sweeps.grid import Flat
 from tippetop.sweeps.lane_executor import Lanes, arrivals
 from tippetop.sweeps.launch_arrays import Launches
-from tippetop.sweeps.single_launches import follow_each, is_alone, note_failure
+from tippetop.sweeps.single_launches import follow_each, needs_single_launches, note_failure
 from tippetop.sweeps.taylor_stepper import stepper
 from tippetop.sweeps.trajectory_samples import SUMMED_UP, TrajectorySamples
 
@@ -82,7 +82,7 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         return variables
     launches = cells.launches(good, sweep.duration)
     method = None
-    if not (is_alone(launches) or {*SUMMED_UP, EVENTS} & set(sweep.keep)):
+    if not (needs_single_launches(launches) or {*SUMMED_UP, EVENTS} & set(sweep.keep)):
         motion = swept_motion(launches.kind)
         method = stepper(motion, sweep.tolerance, sampled=bool(sweep.sampled))
     alike = np.argsort(expected_cost(launches), kind="stable")

@@ -32,6 +32,7 @@ from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.surfaces.surface import support_at
 from tippetop.mechanics.top import Kind, Top
 from tippetop.results.highest_gaps import highest_gaps_of
+from tippetop.sweeps.axis_extremes import TipMotion
 from tippetop.sweeps.flight_steps import (
     GIVEN,
     LEFT,
@@ -44,7 +45,6 @@ from tippetop.sweeps.flight_steps import (
 from tippetop.sweeps.launch_arrays import Flags, Indices
 from tippetop.sweeps.taylor_step import is_singular
 from tippetop.sweeps.taylor_stepper import NumPyArithmetic
-from tippetop.sweeps.tip_extremes import TipMotion
 from tippetop.sweeps.trajectory_samples import TrajectorySamples
 
 PLAIN = NumPyArithmetic()

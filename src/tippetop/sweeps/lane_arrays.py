@@ -10,10 +10,10 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Top
 from tippetop.results.accumulation import accumulate, before_launch
 from tippetop.results.metrics import STATUSES
+from tippetop.sweeps.axis_extremes import TipMotion
 from tippetop.sweeps.launch_arrays import Flags, Indices, Launches, branched
 from tippetop.sweeps.taylor_step import LANES
 from tippetop.sweeps.taylor_stepper import LaneStepper
-from tippetop.sweeps.tip_extremes import TipMotion
 from tippetop.sweeps.trajectory_samples import TrajectorySamples
 
 HELD_BY_LANES = {"time", "status", "steps", "turned", "arrived"}

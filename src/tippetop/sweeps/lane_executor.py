@@ -14,14 +14,14 @@ from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.integrators.relief import PATIENCE, is_stiff
 from tippetop.results.metrics import Ends
+from tippetop.sweeps.axis_extremes import FORCE
 from tippetop.sweeps.lane_arrays import Slots
 from tippetop.sweeps.launch_arrays import Checkpoint, Flags, Indices, Launches, picked
 from tippetop.sweeps.polynomial_arcs import arcs
 from tippetop.sweeps.taylor_step import LANES, SLIDING, is_singular
 from tippetop.sweeps.taylor_stepper import LaneStepper
-from tippetop.sweeps.tip_extremes import FORCE
 from tippetop.sweeps.trajectory_samples import TrajectorySamples
-from tippetop.sweeps.transitions import Crossings
+from tippetop.sweeps.transitions import LaneTransitions
 from tippetop.theory.prediction import is_held
 
 LOST = 4.0
@@ -59,7 +59,7 @@ class Lanes:
         self.tolerance, self.banded, self.settled = tolerance, band is not None, settled
         self.slots = slots = Slots(launches, stepper, band, samples)
         self.crossings, self.checkpoints = (
-            Crossings(slots, tolerance, band is not None),
+            LaneTransitions(slots, tolerance, band is not None),
             list[Checkpoint](),
         )
         self._launched = slots.alive.copy()

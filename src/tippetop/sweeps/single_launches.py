@@ -28,7 +28,7 @@ from tippetop.theory.prediction import is_held
 _LOG = logging.getLogger(__name__)
 
 
-def is_alone(launches: Launches) -> bool:
+def needs_single_launches(launches: Launches) -> bool:
     """Return whether every launch of a sweep must be followed by itself.
 
     The steps of lanes cannot treat several surfaces, a slope, air, users' rules, or a law that
@@ -36,9 +36,9 @@ def is_alone(launches: Launches) -> bool:
     where a lane's motion becomes stiff (`lane_executor`).
     """
     example = launches.kind.example
-    has_built_in_rules = launches.rules is None and not isinstance(example.surface, Hull)
+    has_own_rules, is_hull = launches.rules is not None, isinstance(example.surface, Hull)
     has_field = launches.kind.field is not None
-    return not has_built_in_rules or has_field or has_choices(example)
+    return has_own_rules or is_hull or has_field or has_choices(example)
 
 
 def follow_each(

@@ -20,10 +20,10 @@ from tippetop.integrators.base import Array
 from tippetop.mechanics.contacts.branches import is_branched
 from tippetop.mechanics.flight.free_motion import gap
 from tippetop.mechanics.motion import along_table, axial_spin
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.results.catalogue import SAMPLED, Variable
 from tippetop.results.samples import OF_INSTANTS, Samples, continuous, event_in_si, observe

@@ -31,7 +31,7 @@ FLIGHT_LIMIT = 50_000
 """Flights after which a launch is given up."""
 
 
-class Crossings:
+class LaneTransitions:
     """Transitions of launches under way, which end when they reach a band of n_z if they are
     `banded`.
 

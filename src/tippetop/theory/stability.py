@@ -29,9 +29,9 @@ from tippetop.mechanics.contacts.branches import on_branch
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import sliding_rates
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.top import Top, natural, natural_units
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.support.errors import Described, InvalidInput

@@ -1,6 +1,6 @@
 """Translation of Python modules to JavaScript, statement by statement.
 
-Read `program` first: the symbol table of the translated modules. `types` and `inference` infer the
+Read `symbols` first: the symbol table of the translated modules. `types` and `inference` infer the
 types of expressions, so that a method or a field is found in its class. `expressions`, `calls`,
 `statements` and `definitions` translate what their names say, each building on the one before;
 `layout` breaks long lines. `runtime_names` lists the names of the JavaScript runtime.

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from functools import reduce
 
 from tippetop.translate.expressions import ATOM, Expressions
-from tippetop.translate.program import Class, Member, parameters, safe
 from tippetop.translate.runtime_names import ERRORS, FUNCTIONS, METHODS
+from tippetop.translate.symbols import Class, Member, parameters, safe
 from tippetop.translate.types import ROWS, Type, alternatives_of, is_only
 
 BY_NAME = {"max": {"key", "default"}, "min": {"key", "default"}, "sorted": {"key"}}

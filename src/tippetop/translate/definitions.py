@@ -4,7 +4,8 @@ import ast
 import json
 from collections.abc import Iterator
 
-from tippetop.translate.program import (
+from tippetop.translate.statements import Statements, indented
+from tippetop.translate.symbols import (
     FORMS_OF_CLASS,
     OPERATORS,
     RECORDS,
@@ -15,7 +16,6 @@ from tippetop.translate.program import (
     safe,
     targets_of,
 )
-from tippetop.translate.statements import Statements, indented
 
 
 class Definitions(Statements):

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from tippetop.translate.inference import Inference
-from tippetop.translate.program import ENUMERATIONS, Program, names_in, safe
 from tippetop.translate.runtime_names import MODULES, NUMPY_ARRAYS
+from tippetop.translate.symbols import ENUMERATIONS, SymbolTable, names_in, safe
 from tippetop.translate.types import ROWS, Type, is_only, kinds_of
 
 ARROW, OR, AND, BITS, EQUAL, LESS, SUM, PRODUCT, UNARY, ATOM = range(10)
@@ -54,7 +54,7 @@ class Expressions(Inference):
         Name of the module.
     """
 
-    def __init__(self, program: Program, module: str) -> None:
+    def __init__(self, program: SymbolTable, module: str) -> None:
         super().__init__(program, module)
         words = program.declared[module].words
         self.arrays = "arrays" in words

@@ -5,15 +5,15 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TypeAlias
 
-from tippetop.translate.program import (
-    Class,
-    Member,
-    Program,
-    Symbol,
-    within,
-)
 from tippetop.translate.refusal import Untranslatable
 from tippetop.translate.runtime_names import METHODS, MODULES
+from tippetop.translate.symbols import (
+    Class,
+    Member,
+    Symbol,
+    SymbolTable,
+    within,
+)
 from tippetop.translate.types import (
     ANY,
     ARRAY,
@@ -91,7 +91,7 @@ class Inference:
         Name of the module.
     """
 
-    def __init__(self, program: Program, module: str) -> None:
+    def __init__(self, program: SymbolTable, module: str) -> None:
         self.program, self.module = program, module
         self.scopes = [Scope()]
         self.owner: Class | None = None

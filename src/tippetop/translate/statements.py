@@ -6,7 +6,7 @@ from typing import Any
 
 from tippetop.translate.calls import Calls
 from tippetop.translate.expressions import ATOM, LESS, is_list
-from tippetop.translate.program import (
+from tippetop.translate.symbols import (
     FORMS_OF_FUNCTION,
     all_of,
     all_parameters,

@@ -3,7 +3,7 @@
 import ast
 from typing import NamedTuple
 
-from tippetop.translate.program import Class
+from tippetop.translate.symbols import Class
 
 
 class Type(NamedTuple):

@@ -125,7 +125,7 @@ def find_onset(
     return Onset(onset[0], onset[1], tuple(max(rate, 0.0) for rate in along), onset[2], onset[3])
 
 
-def resolve_onset(
+def contact_after_end(
     point: ContactPoint,
     slip: Slip | None,
     rolling: Slip | None,

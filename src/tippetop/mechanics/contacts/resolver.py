@@ -37,7 +37,12 @@ from tippetop.mechanics.contacts.forces import (
     sticking_constraints,
     sum_at,
 )
-from tippetop.mechanics.contacts.onset_forces import Onset, TableResponse, find_onset, resolve_onset
+from tippetop.mechanics.contacts.onset_forces import (
+    Onset,
+    TableResponse,
+    contact_after_end,
+    find_onset,
+)
 from tippetop.mechanics.contacts.pair import ContactPair, apart, slip_apart, slips_of
 from tippetop.mechanics.contacts.pair_resolver import (
     Resolution,
@@ -143,13 +148,13 @@ def closed_alone(
     if rises((point,), (slip,), rolling):
         if free >= 0.0:
             return []
-        onset, begins = resolve_onset(point, slip, rolling)
+        onset, begins = contact_after_end(point, slip, rolling)
         return [Answer((number,), onset, begins)]
 
     weight = point.top.mass * point.top.gravity
 
     def loaded(x: float) -> tuple[Onset, tuple[bool, bool]]:
-        return resolve_onset(point, slip, rolling, moved=moved_under(weight * x, 1.0 - x))
+        return contact_after_end(point, slip, rolling, moved=moved_under(weight * x, 1.0 - x))
 
     def opening(x: float) -> float:
         return free if x == 0.0 else float(loaded(x)[0].acceleration.point[2])

@@ -13,10 +13,10 @@ from tippetop.mechanics.impacts.unit_impulse import StruckContacts, normal_veloc
 from tippetop.mechanics.laws.coulomb import RollingResistance
 from tippetop.mechanics.laws.friction import FrictionLaw
 from tippetop.mechanics.motion import angular_velocity, point_velocity
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.surface import contact_vector, kind_of
 from tippetop.mechanics.top import RigidBody, Top
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, add, length, scale
 
 FUZZ = 1e-14

@@ -18,7 +18,7 @@ from tippetop.mechanics.contacts.forces import (
     is_set_valued,
     slip_length,
 )
-from tippetop.mechanics.contacts.onset_forces import resolve_onset
+from tippetop.mechanics.contacts.onset_forces import contact_after_end
 from tippetop.mechanics.contacts.pair import ContactPair, slip_apart, slips_of
 from tippetop.mechanics.contacts.pair_resolver import OnTwo, Resolution, of_slips
 from tippetop.mechanics.contacts.resolver import moved_under
@@ -144,7 +144,7 @@ def status_at(
     points = [point._replace(turning=turning) for point in body.points]
     if len(numbers) == 1:
         number = numbers[0]
-        onset, _ = resolve_onset(
+        onset, _ = contact_after_end(
             points[number],
             None if ended[number] else slips[number],
             None if stopped else rolling,

@@ -9,7 +9,7 @@ dissipation potential. Sticking needs v = 0 and w = 0.
 from typing import NamedTuple
 
 from tippetop.mechanics.laws.friction import Traction
-from tippetop.mechanics.units import Units
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
 PI = 3.141592653589793

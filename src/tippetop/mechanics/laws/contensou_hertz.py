@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 from tippetop.mechanics.laws.contensou import PI, PatchLaw
 from tippetop.mechanics.laws.friction import Traction
 from tippetop.mechanics.laws.hertz_shares import drilling_shares, scaled_shares, sliding_shares
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.series import horner
-from tippetop.mechanics.units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
 # fmt: off

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from tippetop.mechanics.laws.friction import NO_TORQUE, Traction
-from tippetop.mechanics.units import Units
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
 TINY = 1e-300

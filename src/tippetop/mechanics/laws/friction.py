@@ -2,7 +2,7 @@
 
 from typing import NamedTuple, Protocol
 
-from tippetop.mechanics.units import Units
+from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
 

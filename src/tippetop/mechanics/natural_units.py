@@ -1,4 +1,4 @@
-"""The units in which the numbers of a top are few."""
+"""Natural units of a top: its mass, its size and sqrt(size / g)."""
 
 from typing import NamedTuple
 

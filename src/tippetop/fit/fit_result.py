@@ -1,4 +1,4 @@
-"""What a fit tells: numbers with errors, residuals, and what the data do not determine."""
+"""Result of a fit: standard errors, residuals, cautions, and what the data do not determine."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

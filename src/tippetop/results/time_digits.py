@@ -25,7 +25,7 @@ TENS = 10.0
 """Time, s, from which on four digits are written, and three below it."""
 
 
-def told_times(facts: Facts) -> dict[str, float]:
+def account_times(facts: Facts) -> dict[str, float]:
     """Return the times that a run and its account tell, s, by the names of variables and clauses.
 
     When a run ends as long as it was asked for is no result.
@@ -53,7 +53,7 @@ def time_changes(facts: Facts, facts_beside: Facts) -> dict[str, float]:
 
     Infinite where the run beside it does not tell the same, or goes through other events before.
     """
-    times, others = told_times(facts), told_times(facts_beside)
+    times, others = account_times(facts), account_times(facts_beside)
     changes = dict[str, float]()
     for name, time in times.items():
         changes[name] = math.inf

@@ -111,7 +111,7 @@ class Symbol:
     node: Class | ast.FunctionDef | ast.Assign | ast.AnnAssign
 
 
-class Program:
+class SymbolTable:
     """The translated modules and the meaning of their names.
 
     Parameters

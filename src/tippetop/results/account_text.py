@@ -1,4 +1,4 @@
-"""Descriptions of runs in words: the facts of a run for its account, and the English texts."""
+"""Texts of accounts: the facts of a run, and the English sentences with their numbers."""
 
 import json
 import math
@@ -14,7 +14,7 @@ from tippetop.problem.problem import Problem
 from tippetop.results.account import Clause, Facts, account_of
 from tippetop.results.catalogue import METRICS
 from tippetop.results.dataset import require_run
-from tippetop.results.told_times import TENS, time_digits
+from tippetop.results.time_digits import TENS, time_digits
 
 MILLISECONDS = 0.01
 """Times below it, s, are written in milliseconds."""

@@ -1,4 +1,4 @@
-"""Two contacts that are closed and have no normal velocities, as the resolver takes them."""
+"""Two closed contacts without normal velocities, as the resolver takes them; not in an impact."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -48,7 +48,7 @@ class Before(NamedTuple):
 
 
 @dataclass(frozen=True)
-class TwoClosed:
+class ClosedPair:
     """Two contacts that are closed and have no normal velocities."""
 
     tops: Tops
@@ -69,7 +69,7 @@ class TwoClosed:
         tops: Tops,
         rolls: float,
         ended: tuple[bool, bool] | None = None,
-    ) -> "TwoClosed":
+    ) -> "ClosedPair":
         """Return the contacts in a state, with slip and tilting that have ended set to zero.
 
         Where a velocity ends, the impulse that ends it is applied. A contact that sticks comes
