@@ -39,7 +39,7 @@ from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.problem.problem import Problem, top_of
-from tippetop.support.errors import Described, InvalidInput, is_number
+from tippetop.support.errors import MISSING, Described, InvalidInput, is_number
 from tippetop.support.units import number_in
 from tippetop.theory.derivatives import jacobian
 from tippetop.theory.requirements import require_no_field, sticks
@@ -154,13 +154,19 @@ def _checked(numbers: dict[str, Any]) -> dict[str, float]:
     if asked.get("radius", 0.0) < 0.0:
         raise InvalidInput("radius", asked["radius"], "0 or more, in m")
     if asked.get("radius") == math.inf:
+        if asked.get("rate", 0.0) != 0.0:
+            raise InvalidInput(
+                "rate",
+                asked["rate"],
+                "0, or a finite radius",
+                "does not go with an infinite radius: the axis of a body that rolls straight keeps"
+                " its direction",
+            )
         asked = {**asked, "rate": 0.0}
         del asked["radius"]
     if asked.get("rate") == 0.0 and len(asked) < 3 and "spin" not in asked:
         raise InvalidInput(
-            "spin",
-            Described("none"),
-            "one beside a rate of 0: a body that rolls straight does so at any spin",
+            "spin", MISSING, "one: a body that rolls straight, at a rate of 0, does so at any spin"
         )
     if len(asked) == 1 and "radius" not in asked:
         asked["radius"] = 0.0
