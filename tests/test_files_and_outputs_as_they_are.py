@@ -132,6 +132,12 @@ def test_a_surface_has_no_thresholds_where_another_touches(tmp_path):
     assert "upright changes at" in said
     assert "inverted changes at" not in said
     assert "e+" not in said
+    command[-1:] = ["--preset", "report-stem"]
+    said = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, check=True, timeout=120
+    ).stdout
+    assert "upright spin unstable above" in said.decode()
+    assert "inverted spin stable above" not in said.decode()
 
 
 def test_a_data_set_makes_no_folder_around_it(tmp_path):

@@ -69,6 +69,9 @@ def test_people_are_told_too(files):
         "2.46746",
     ):
         assert text in lines
+    assert "upright spin unstable above" in lines
+    assert "inverted spin stable above" not in lines, "the top stands on its stem there"
+    assert "inverted spin stable above" in said("ball.toml", "--no-runs")
     cut_off = said("bowl.csv", "--density", "700", "--unit", "mm", code=2)
     assert "Cannot be simulated: profile: a sphere of which only tilts" in cut_off
     assert "--whole" in cut_off

@@ -402,8 +402,9 @@ def _rows(summary: dict[str, Any]) -> list[tuple[str, str, str]]:
                 "radii",
             ),
             ("upright spin unstable above ω_c1", spelled(summary["omega_c1"], 7), "rad/s"),
-            ("inverted spin stable above ω_c2", spelled(summary["omega_c2"], 7), "rad/s"),
         ]
+    if summary["group"] and summary["surfaces"][0]["to_tilt"] == math.pi:
+        rows.append(("inverted spin stable above ω_c2", spelled(summary["omega_c2"], 7), "rad/s"))
     if summary["touch"]:
         spin = spelled(summary["touch"]["least_launch_spin"], 7)
         number = summary["touch"]["surface"]

@@ -121,7 +121,7 @@ def _sentences(outlook: "Outlook") -> Iterator[Any]:
         )
     if outlook.group is not None and outlook.creeps:
         yield (
-            f"[dim]ω_c1, ω_c2: spins of launches with this one's tilt, {outlook.tilt:.6g} rad, and"
+            f"[dim]Critical spins are of launches with this one's tilt, {outlook.tilt:.6g} rad, and"
             " rates.[/]"
         )
     if outlook.arrival_time is not None:
@@ -207,8 +207,8 @@ def _critical_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
         _threshold("λ_up", outlook.jellett_upright, "kg m³/s"),
         _threshold("λ_down", outlook.jellett_inverted, "kg m³/s"),
     ]
-    # A sphere goes on beyond the tilts at which another surface touches; other surfaces may not.
-    on_surface = [sphere or outlook.tilts[0] == 0.0, sphere or outlook.tilts[1] == math.pi]
+    # Where another surface touches, this one has no vertical spin.
+    on_surface = [outlook.tilts[0] == 0.0, outlook.tilts[1] == math.pi]
     return [*compress(spins, on_surface), *compress(integrals, on_surface), jellett]
 
 
