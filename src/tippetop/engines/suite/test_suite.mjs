@@ -4,7 +4,7 @@
 // README.md says what it takes and returns. TOLERANCE is relative, 1e-3 unless set.
 
 import assert from "node:assert/strict";
-import { readdirSync, readFileSync } from "node:fs";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
@@ -12,6 +12,9 @@ import { fileURLToPath, pathToFileURL } from "node:url";
 const folder = path.dirname(fileURLToPath(import.meta.url));
 const tolerance = Number(process.env.TOLERANCE ?? "1e-3");
 const file = path.resolve(process.env.SIMULATE ?? path.join(folder, "simulate.mjs"));
+if (!existsSync(file)) {
+  throw new Error(`there is no ${file}: write it, or name your file by SIMULATE`);
+}
 const { simulate } = await import(pathToFileURL(file));
 const vectors = ["axis", "angular_velocity", "velocity"];
 
