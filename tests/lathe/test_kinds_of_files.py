@@ -100,6 +100,21 @@ def test_a_heading_may_have_the_unit(tmp_path):
         mass(tmp_path / "a.csv")
 
 
+@pytest.mark.parametrize("heading", ["d (mm),z (mm)", "Durchmesser,z", "Ø,z"])
+def test_diameters_are_not_taken_for_radii(tmp_path, heading):
+    (tmp_path / "a.csv").write_text(f"{heading}\n0,0\n60,0\n60,50\n0,50")
+    with pytest.raises(tt.InvalidInput, match=r"half the diameters, in a column such as r \(mm\)"):
+        mass(tmp_path / "a.csv")
+
+
+def test_numbers_of_millimetres_without_a_unit_are_remarked_on(tmp_path):
+    (tmp_path / "a.csv").write_text("r,z\n0,0\n20,0\n20,10\n0,10")
+    _, remarks = read_with_remarks(tmp_path / "a.csv", density=1.0)
+    assert any("metres were taken" in remark for remark in remarks)
+    _, remarks = read_with_remarks(tmp_path / "a.csv", density=1.0, unit="mm")
+    assert remarks == []
+
+
 def old_dxf(points):
     """Lines with the codes in the order 10, 11, 20, 21, as old exporters write them."""
     lines = ["  0", "SECTION", "  2", "ENTITIES"]

@@ -1,6 +1,6 @@
 """Result of a fit: standard errors, residuals, cautions, and what the data do not determine."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -20,7 +20,7 @@ from tippetop.fit.residual_statistics import (
 from tippetop.fit.search import Minimum, Search
 from tippetop.integrators.base import Array
 from tippetop.problem.problem import Problem
-from tippetop.support.errors import InvalidInput, NotConverged, is_number
+from tippetop.support.errors import Described, InvalidInput, NotConverged, is_number
 from tippetop.support.suggestions import not_one_of
 
 UNDETERMINED = 1e-6
@@ -505,7 +505,10 @@ def compare_fits(fits: Mapping[str, FitResult]) -> Comparison:
     ['mu', 'mu and spin']
     """
     if not isinstance(fits, Mapping) or len(fits) < 2:
-        raise InvalidInput("fits", fits, "at least two fits by name")
+        size = f" of {len(fits)}" if isinstance(fits, Sized) else ""
+        stated = Described(f"a {type(fits).__name__}{size}")
+        accepted = 'at least two results of tt.fit by name, such as {"viscous": a, "dry": b}'
+        raise InvalidInput("fits", stated, accepted)
     first, *others = fits.values()
     data = [one.values for one in first.measurements]
     for one in others:

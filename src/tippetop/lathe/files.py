@@ -28,6 +28,18 @@ HEADING_UNIT = re.compile(r"[(\[{/_,\s](mm|cm|m|in|inch|inches)\b[)\]}]?\s*$", r
 OTHER_UNIT = re.compile(r"[(\[{/]\s*([^\W\d_]+\W?)\s*[)\]}]?\s*$")
 """Word that stands in a heading where a unit stands."""
 
+DIAMETER = re.compile(r"\s*(d|dia|diam|diameter|durchmesser|[ØøΦ⌀∅])\b", re.IGNORECASE)
+"""Heading of a column of diameters, of which half are the distances from the axis."""
+
+METRE = 1.0
+"""Distance from the axis in a file without a unit beyond which a remark says that metres were
+taken, m: no top is as wide.
+"""
+
+TAKEN_AS_METRES = (
+    "The file has no unit, and metres were taken: write r (mm) as heading, or --unit mm."
+)
+
 STARTS = "0123456789+-."
 """First characters of numbers, also of mistyped ones; cells of a heading do not begin so."""
 
@@ -151,6 +163,8 @@ def _read(
                 "unit", unit, written_unit, "is not the unit in the heading", file=named(path)
             )
         reading = _of_points(points, axis, written_unit or unit or "m", tolerance, field)
+        if (written_unit or unit) is None and any(abs(point[0]) > METRE for point in points):
+            reading.remarks.append(TAKEN_AS_METRES)
         return _in_unit(reading, written_unit or "m", content, is_in_toml)
     with in_words(path, "read"):
         if suffix in MESHES:
@@ -238,6 +252,10 @@ def _from_csv(text: str, path: Path) -> _Table:
 
 def _unit_of(heading: list[str], path: Path) -> str | None:
     """Return the unit of lengths in a heading, None if it has none; refuse several units."""
+    for cell in heading:
+        if DIAMETER.match(cell):
+            accepted = "distances from the axis, half the diameters, in a column such as r (mm)"
+            raise InvalidInput("heading", cell, accepted, file=named(path))
     matches = [HEADING_UNIT.search(f" {cell}") for cell in heading]
     for cell, match in zip(heading, matches, strict=True):
         if match is None and OTHER_UNIT.search(f" {cell}"):

@@ -58,7 +58,8 @@ def density_of(value: Any) -> Any:
     match = INFILL.fullmatch(value)
     names = sorted(DENSITIES)
     if match is None:
-        raise InvalidInput("", value, 'a number, or a material such as "beech" or "PLA 20 %"')
+        accepted = 'a number, or a material such as "beech" or "PLA 20 %"'
+        raise InvalidInput("", value, accepted, hint=f"known are {', '.join(names)}")
     name = match[2].lower()
     name = SYNONYMS.get(name, name)
     if name not in DENSITIES:

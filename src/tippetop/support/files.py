@@ -46,6 +46,11 @@ _OF_OTHERS = {
         ".json",
         ".toml",
         ".zarr",
+        ".xlsx",
+        ".xls",
+        ".ods",
+        ".txt",
+        ".tsv",
     ),
     *(".stl", ".3mf"),
 }
