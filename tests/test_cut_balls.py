@@ -211,3 +211,35 @@ def test_the_end_of_a_cut_ball_is_that_of_the_ball_if_it_stays_on_it():
         tt.predict(of(BALL, tilt=0.1, spin=300.0))
     with pytest.raises(tt.InvalidInput, match="an eccentric sphere"):
         tt.predict(of(BALL, tilt=2.0, spin=20.0))
+
+
+@pytest.mark.parametrize("friction", [tt.ViscousFriction(mu=0.3), tt.CoulombFriction(mu=0.3)])
+@pytest.mark.parametrize("tilt", [math.pi, math.pi - 1e-9])
+def test_a_run_ends_where_a_cut_ball_falls_on_its_cut(friction, tilt):
+    falling = of(BALL, friction=friction, tilt=tilt, spin=0.0, gap=0.002)
+    run = tt.simulate(falling, 0.5, samples=3)
+    assert run.attrs["status"] == "failed"
+    assert "flat end of a surface of arcs" in run.attrs["message"]
+    assert run["event_kind"].values.tolist() == ["touchdown"]
+    assert float(run["end_time"]) == pytest.approx(math.sqrt(2 * 0.002 / falling.gravity), rel=1e-9)
+
+
+def test_a_cut_ball_has_no_inverted_spin():
+    """It would lie on its cut, which is no spin on a point as that of its edge or of a ball."""
+    ball = of(BALL, tilt=0.1, spin=150.0)
+    (upright,) = tt.steady_states(ball)
+    assert upright.kind == "upright"
+    edge = of(EDGE, tilt=0.1, spin=150.0)
+    assert tt.steady_states(edge) == []
+    whole = of(tt.Sphere(radius=RADIUS, center=CENTER), tilt=0.1, spin=150.0)
+    *_, inverted = tt.steady_states(whole)
+    assert inverted.kind == "inverted"
+    with pytest.raises(tt.InvalidInput, match="touches in one point"):
+        tt.spectrum(ball, inverted)
+    spins = tt.critical_spins(ball)
+    assert spins.inverted == math.inf
+    # The upright spin does not know of the cut.
+    values, complete = (
+        np.sort_complex(tt.spectrum(one, upright).eigenvalues) for one in (ball, whole)
+    )
+    np.testing.assert_allclose(values, complete, rtol=1e-9)

@@ -54,7 +54,15 @@ from tippetop.contact.slip_end_motion import (
 )
 from tippetop.contact.slip_onset import ENDED, ONSET_OVER, UNSEEN, SlipOnset
 from tippetop.contact.soonest_end import on_present_branch, rolls_freely, soonest_end
-from tippetop.contact.surfaces import FACE, FLAT_END, TOUCH, WOBBLE, lands_flat, lies_flat
+from tippetop.contact.surfaces import (
+    FACE,
+    FLAT_END,
+    TOUCH,
+    WOBBLE,
+    lands_flat,
+    lies_flat,
+    lies_on_flat_end,
+)
 from tippetop.contact.tip_onset import BARELY_TILTED, TILTED, TipOnset
 from tippetop.contact.touching import (
     SLOWEST_ROCKING,
@@ -510,6 +518,8 @@ class Automaton:
         Where another surface stays, the tilt does, and all do that touch: the body rests on the
         outermost two. One that sinks faster than rocking that has ended strikes.
         """
+        if lies_on_flat_end(contact, state.axis):
+            return Transition(events, Status.FAILED, state, ON_FLAT_END)
         beside = other_touching(contact, state)
         closed, reported = False, events
         for neighbour in beside:
@@ -776,6 +786,8 @@ class Automaton:
         reported = (Event(EventKind.TOUCHDOWN, time, surface=contact.number),)
         if lands_flat(contact, state.axis):
             return self.strike_face(contact, time, state, reported)
+        if lies_on_flat_end(contact, state.axis):
+            return Transition(reported, Status.FAILED, state, ON_FLAT_END)
         return self._collide(contact, time, state, reported, self.restitution)
 
     def touch(

@@ -58,6 +58,13 @@ def lands_flat(top: Top, axis: Vector) -> Scalar:
     return is_edge(top.surface) and edge.lies_flat(axis, NEARLY_FLAT)
 
 
+def lies_on_flat_end(top: Top, axis: Vector) -> Scalar:
+    """Return whether a body whose active surface touches the table lies on a flat end of arcs, or
+    so nearly that it counts as lying there.
+    """
+    return has_flat_end(top.surface) and _end_guard(top, axis, axis) <= 0.0
+
+
 def passes_flat(top: Top, rows: Sequence[Row]) -> bool:
     """Return whether a body may come to lie flat between rows of numbers, the first of the
     numbers, floats.

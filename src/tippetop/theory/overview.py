@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-from tippetop.mechanics.surfaces.hull import Hull, is_edge
+from tippetop.mechanics.surfaces.hull import Hull, lies_flat_at
 from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.problem.frictions import ViscousFriction
@@ -31,6 +31,7 @@ from tippetop.theory.steady import (
     VERTICAL_SPINS,
     SteadyKind,
     SteadyState,
+    end_of,
     has_level_spin,
     is_neutral,
     jellett_of_launch,
@@ -175,8 +176,8 @@ def outlook(problem: Problem) -> Outlook:
     jellett = jellett_of_launch(problem)
     sphere, vertical = top.conserves_jellett, problem.launch.tilt in (0.0, math.pi)
     drills, smooth = not top.torque_free, problem.friction.vanishes
-    edge, creeping = is_edge(top.surface), creeps(top)
-    stays = None if drills or edge or sticks(top) else steady_state_of_launch(problem)
+    flat, creeping = lies_flat_at(top.surface, math.cos(problem.launch.tilt)), creeps(top)
+    stays = None if drills or flat or sticks(top) else steady_state_of_launch(problem)
     grouped = sphere and 0.0 < eccentricity(top) < 1.0
     limit, time, needs = (
         _arrival_times(problem) if grouped and stays is None else (None, None, None)
@@ -204,7 +205,7 @@ def outlook(problem: Problem) -> Outlook:
         else None,
         creeps=creeping,
         sticks=sticks(top),
-        standing=None if edge else _standing(problem, top),
+        standing=_standing(problem, top),
         lying=lying(top, problem.launch.tilt),
         resting_center=None if vertical else resting_center_on(problem.launch.tilt, top),
     )
@@ -224,7 +225,7 @@ def _standing(problem: Problem, top: Top) -> Standing | None:
     smooth, rolling = (sleeping(kind, top, launch.spin, rolls=rolls) for rolls in (False, True))
     if not rolling.spin or math.sin(launch.tilt) > NEAR_POLE:
         return None
-    pole = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
+    pole = end_of(kind)
     point = SphereSurface(0.0, -pole * float(top.surface.height(pole)))
     pivot = sleeping(kind, top.altered(surface=point), launch.spin, rolls=True)
     creep = critical_spin(kind, top)
@@ -276,7 +277,8 @@ def steady_states(
     Without numbers they are all those with the launch's Jellett's integral or, if that is not
     conserved, both vertical spins with its axial spin and the level spin with its precession. Those
     of a body of several surfaces are on the surface that it is launched on, at tilts where no other
-    touches. A body that lies flat when its axis is vertical has none.
+    touches. A body that lies flat when its axis is vertical has no vertical spin there, and one
+    that does so at both ends has none of these.
 
     With one or two of the four numbers they are the motions in which the body rolls without slip
     at constant tilt, on any one of its surfaces, whatever the launch: its centre of mass rests
@@ -346,10 +348,9 @@ def steady_states(
     top, launch = top_of(problem), problem.launch
     if top.conserves_jellett:
         return all_steady_states(top, jellett_of_launch(problem))
-    if is_edge(top.surface):
-        return []
-    states = [vertical_spin(kind, top, launch.spin) for kind in VERTICAL_SPINS]
-    if has_level_spin(top) and launch.precession:
+    kinds = [kind for kind in VERTICAL_SPINS if not lies_flat_at(top.surface, end_of(kind))]
+    states = [vertical_spin(kind, top, launch.spin) for kind in kinds]
+    if states and has_level_spin(top) and launch.precession:
         states.insert(1, level_spin(top, launch.precession))
     return states
 

@@ -3,7 +3,7 @@
 import math
 
 from tippetop.mechanics.contacts.forces import is_set_valued, slip_length
-from tippetop.mechanics.surfaces.hull import Hull, is_edge
+from tippetop.mechanics.surfaces.hull import Hull, lies_flat_at
 from tippetop.mechanics.top import Top
 from tippetop.support.errors import Described, InvalidInput
 
@@ -71,12 +71,12 @@ def require_creep(top: Top) -> None:
 
     Otherwise there is no linear motion: a point on dry friction sticks and then rolls for ever, and
     rolling resistance holds an axis that hardly moves. A patch on dry friction does creep, by
-    drilling. Bodies of several surfaces, and bodies that lie flat when their axis is vertical, are
-    refused too, and tops on a slope or in air.
+    drilling. Bodies of several surfaces, and bodies that lie flat whenever their axis is vertical,
+    are refused too, and tops on a slope or in air.
     """
     require_no_field(top)
     require_one_surface(top)
-    if is_edge(top.surface):
+    if _lies_flat_at_both_ends(top):
         raise InvalidInput(
             "body.shape",
             Described("this one"),
@@ -106,4 +106,8 @@ def creeps(top: Top) -> bool:
 
     For a body of several surfaces the active one decides.
     """
-    return not (is_edge(top.surface) or top.resists_rolling or sticks(top))
+    return not (_lies_flat_at_both_ends(top) or top.resists_rolling or sticks(top))
+
+
+def _lies_flat_at_both_ends(top: Top) -> bool:
+    return lies_flat_at(top.surface, 1.0) and lies_flat_at(top.surface, -1.0)

@@ -22,7 +22,7 @@ import math
 from typing import NamedTuple
 
 from tippetop.mechanics.top import Top
-from tippetop.theory.steady import SteadyKind
+from tippetop.theory.steady import SteadyKind, end_of
 
 
 class Sleeping(NamedTuple):
@@ -50,7 +50,7 @@ def sleeping(kind: SteadyKind, top: Top, spin: float, *, rolls: bool) -> Sleepin
     rolls
         Whether the contact rolls without slip; otherwise the table is smooth.
     """
-    pole = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
+    pole = end_of(kind)
     height, depth = float(top.surface.height(pole)), -pole * float(top.surface.slope(pole))
     inertia, gyration = float(top.transverse_inertia), float(top.axial_inertia)
     if rolls:

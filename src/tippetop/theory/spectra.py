@@ -2,7 +2,7 @@
 
 import math
 
-from tippetop.mechanics.surfaces.hull import Hull, is_edge
+from tippetop.mechanics.surfaces.hull import Hull, lies_flat_at
 from tippetop.problem.problem import Problem, require_problem, top_of
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.theory.prediction import on_surface
@@ -10,7 +10,7 @@ from tippetop.theory.requirements import require_no_field, sticks
 from tippetop.theory.rolling import rolling_spectrum, straight_spin
 from tippetop.theory.stability import Spectrum
 from tippetop.theory.stability import spectrum as sliding_spectrum
-from tippetop.theory.steady import VERTICAL_SPINS, SteadyKind, SteadyState
+from tippetop.theory.steady import VERTICAL_SPINS, SteadyKind, SteadyState, end_of
 
 
 def spectrum(problem: Problem, state: SteadyState[float]) -> Spectrum:
@@ -54,9 +54,9 @@ def spectrum(problem: Problem, state: SteadyState[float]) -> Spectrum:
     body = top_of(problem).body
     top = body.lowest_at(math.cos(state.tilt))
     require_no_field(top)
-    if state.kind in VERTICAL_SPINS and is_edge(top.surface):
+    if state.kind in VERTICAL_SPINS and lies_flat_at(top.surface, end_of(state.kind)):
         raise InvalidInput(
-            "state", Described("this one"), "one in which the body does not lie flat"
+            "state", Described("this one"), "one in which the body touches in one point"
         )
     if sticks(top):
         if top.resists_rolling:

@@ -31,6 +31,7 @@ from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.motion import sliding_rates
 from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import SlidingState
+from tippetop.mechanics.surfaces.hull import lies_flat_at
 from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
@@ -41,6 +42,7 @@ from tippetop.theory.steady import (
     VERTICAL_SPINS,
     SteadyKind,
     SteadyState,
+    end_of,
     gyroscopic_reaction,
     rolling_spin,
     state_of,
@@ -156,7 +158,9 @@ def vertical_growth_rates(kind: SteadyKind, top: Top, spins: Array) -> Array:
 
 def has_spectrum(kind: SteadyKind, top: Top) -> bool:
     """Return whether the motion about steady states of a kind is linear: see `spectrum`."""
-    return creeps(top) if kind in VERTICAL_SPINS else top.torque_free and not sticks(top)
+    if kind in VERTICAL_SPINS:
+        return creeps(top) and not lies_flat_at(top.surface, end_of(kind))
+    return top.torque_free and not sticks(top)
 
 
 def fastest_growth(kind: SteadyKind, top: Top, spin: float) -> float:

@@ -197,9 +197,14 @@ def branch_jellett(tilt: float, top: Top) -> float:
     return abs(squared**0.5 * rolling.jellett) if squared > 0.0 else math.inf
 
 
+def end_of(kind: SteadyKind) -> float:
+    """Return the cosine of the tilt of a vertical spin."""
+    return 1.0 if kind is SteadyKind.UPRIGHT else -1.0
+
+
 def vertical_spin(kind: SteadyKind, top: Top, spin: Number) -> SteadyState[Number]:
     """Return the vertical spin at theta = 0 or pi with a finite axial spin omega3, rad/s."""
-    c = 1.0 if kind is SteadyKind.UPRIGHT else -1.0
+    c = end_of(kind)
     still = 0.0 * abs(spin)
     tilt = still if kind is SteadyKind.UPRIGHT else still + math.pi
     return _steady(

@@ -15,6 +15,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from tippetop.mechanics.surfaces.hull import lies_flat_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar
 from tippetop.problem.implausible import warn_if_implausible
@@ -24,6 +25,7 @@ from tippetop.theory.steady import (
     VERTICAL_SPINS,
     SteadyKind,
     branch_jellett,
+    end_of,
     jellett_of_launch,
     vertical_spin,
 )
@@ -59,7 +61,7 @@ def critical_jellett(kind: SteadyKind, top: Top) -> float:
     """Return Jellett's integral at which a vertical spin changes stability, kg m^3/s; inf if none.
 
     An eccentric sphere's upright spin is stable below lambda_up, and its inverted spin above
-    lambda_down. The result is inf if the centre of mass is not above the table.
+    lambda_down. The result is inf if the body cannot stand there: see `can_stand`.
     """
     return (
         branch_jellett(vertical_spin(kind, top, 0.0).tilt, top)
@@ -69,9 +71,12 @@ def critical_jellett(kind: SteadyKind, top: Top) -> float:
 
 
 def can_stand(kind: SteadyKind, top: Top) -> bool:
-    """Return whether the centre of mass is above the table when the axis is vertical."""
-    height = float(top.surface.height(1.0 if kind is SteadyKind.UPRIGHT else -1.0))
-    return height > ZERO_HEIGHT * float(top.surface.size)
+    """Return whether the body touches in one point when its axis is vertical, and its centre of
+    mass is above the table.
+    """
+    end = end_of(kind)
+    height = float(top.surface.height(end))
+    return height > ZERO_HEIGHT * float(top.surface.size) and not lies_flat_at(top.surface, end)
 
 
 def critical_spin(kind: SteadyKind, top: Top) -> float:

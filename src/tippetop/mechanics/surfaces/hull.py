@@ -161,6 +161,15 @@ def has_flat_end(surface: Surface) -> bool:
     return len(getattr(acting(surface), "flat_ends", ())) > 0
 
 
+def lies_flat_at(surface: Surface, end: float) -> bool:
+    """Return whether a body whose axis is vertical lies flat on a surface, or on the one that is
+    active: on the face of an edge, or on a flat end of arcs.
+
+    `end` is the cosine of the tilt, 1 or -1.
+    """
+    return is_edge(surface) or end in getattr(acting(surface), "flat_ends", ())
+
+
 def outer_height(surface: Surface, c: Scalar) -> Scalar:
     """Height of the centre of mass above the table while the lowest of all surfaces touches it,
     m.
