@@ -400,3 +400,67 @@ def test_a_face_that_drills_fast_is_not_tipped(friction: tt.Friction) -> None:
         time = 2.0
         slip = math.hypot(*run["velocity"].values[-1, :2])
         assert slip == pytest.approx(speed * math.exp(-0.9 * GRAVITY * time), rel=1e-11)
+
+
+def peg(half: float, axial: float = 1.0) -> tt.Body:
+    """Return a slender body between two rims, whose I3 is m R^2 / 2 times a factor."""
+    mass, radius = 0.02, 0.01
+    rims = [tt.Ring(radius=radius, center=side * half) for side in (1, -1)]
+    inertia = mass * radius**2 / 2
+    transverse = inertia / 2 + mass * half**2 / 3
+    return tt.Body(mass=mass, shape=rims, I1=transverse, I3=axial * inertia)
+
+
+@pytest.mark.parametrize(
+    ("friction", "launch"),
+    [
+        (tt.CoulombFriction(mu=0.5), {}),
+        (tt.CoulombFriction(mu=0.5), {"spin": 20.0}),
+        (tt.CoulombFriction(mu=0.5), {"slip": (0.0, 0.1)}),
+        (tt.ViscousFriction(mu=0.3), {}),
+        (tt.RegularizedCoulombFriction(mu=0.3, eps=1e-3), {"spin": 20.0}),
+    ],
+)
+def test_a_rim_that_the_table_would_have_to_pull_leaves_it(friction: tt.Friction, launch) -> None:
+    """It flies, as its middle rises at a1 times the rate of tilt and its centre of mass falls
+    freely: h w^2 > g.
+    """
+    rate, time = 40.0, 0.01
+    start = tt.Launch(**{"tilt": 0.0, "spin": 0.0, "tilt_rate": rate} | launch)
+    problem = tt.Problem(body=peg(0.03), friction=friction, launch=start, gravity=GRAVITY)
+    run = tt.simulate(problem, time, samples=3)
+    assert run["event_kind"].values.tolist() == ["tips over its rim", "liftoff"]
+    assert run["event_time"].values.tolist() == [0.0, 0.0]
+    rises = 0.01 * rate * time - GRAVITY * time**2 / 2
+    assert float(run["height"][-1]) == pytest.approx(0.03 + rises, rel=1e-12)
+
+
+@pytest.mark.parametrize("mu", [1.31, 1.5, 3.0])
+def test_a_body_whose_rim_friction_jams_is_struck_and_turns_about_it(mu: float) -> None:
+    """Above mu = (I1/(m a1) + a1)/h an impulse ends slip at once, without moment about that point
+    of the rim.
+    """
+    speed, half, radius = 0.5, 0.02, 0.01
+    body, start = peg(half), tt.Launch(tilt=0.0, spin=0.0, slip=(speed, 0.0))
+    problem = tt.Problem(body=body, friction=tt.CoulombFriction(mu=mu), launch=start)
+    run = tt.simulate(problem, 0.002, samples=2)
+    assert run["event_kind"].values.tolist() == ["tips over its rim", "impact", "stick"]
+    about_rim = body.I1 + body.mass * (half**2 + radius**2)
+    rate = body.mass * half * speed / about_rim
+    impulse = body.mass * radius * rate
+    lost = body.mass * speed**2 / 2 - about_rim * rate**2 / 2
+    assert float(run["event_impulse"][1]) == pytest.approx(impulse, rel=1e-12)
+    assert float(run["event_energy_lost"][1]) == pytest.approx(lost, rel=1e-12)
+    assert float(run["energy_error"]) < 1e-12
+
+
+@pytest.mark.parametrize(
+    "friction", [tt.ViscousFriction(mu=3.0), tt.RegularizedCoulombFriction(mu=1.5, eps=1e-3)]
+)
+def test_smooth_friction_jams_a_rim_as_dry_friction_does(friction: tt.Friction) -> None:
+    start = tt.Launch(tilt=0.0, spin=0.0, slip=(0.5, 0.0))
+    problem = tt.Problem(body=peg(0.02), friction=friction, launch=start)
+    run = tt.simulate(problem, 0.002, samples=2)
+    assert run.attrs["status"] == "completed"
+    assert run["event_kind"].values[:2].tolist() == ["tips over its rim", "impact"]
+    assert float(run["energy_error"]) < 1e-12

@@ -101,6 +101,7 @@ from tippetop.mechanics.face_motion import (
     law_of_face,
     leaning_direction,
     lying_flat,
+    onto_face,
     pressure_reserve,
     rim_speed,
     tipping_direction,
@@ -723,16 +724,26 @@ class Automaton:
         events: tuple[Event, ...],
     ) -> Transition:
         """Return the mode in which the axis begins to lean into a direction: the rim slips, or
-        sticks if friction can hold it.
+        sticks if friction can hold it. Or what follows where it does not stay on the table.
+
+        At zero tilt the rim's point that touches is undefined: the forces are those of a body that
+        is barely tilted.
         """
         x, y = direction
         touching = state._replace(axis=(LEAN * x, LEAN * y, state.axis[2]))
-        edge = ContactMode(contact, pulls=self.pulls)
-        if not is_set_valued(contact.friction) or is_slipping(*along_table(touching), contact):
-            return Transition(events, TipOnset(contact, edge, direction), state)
+        slips = bool(is_slipping(*along_table(touching), contact))
+        sticks = is_set_valued(contact.friction) and not slips
         barely = state._replace(axis=(BARELY_TILTED * x, BARELY_TILTED * y, state.axis[2]))
-        resolved = self.resolve(contact, time, barely, (True, False), events=events)
-        following = resolved.next
+        resolved = self.resolve(contact, time, barely, (sticks, False), events=events)
+        following, edge = resolved.next, ContactMode(contact, pulls=self.pulls)
+        later = resolved.events[len(events) :]
+        if any(event.kind is EventKind.IMPACT for event in later):
+            undecided = [event for event in later if event.kind is EventKind.INDETERMINATE]
+            return self._strike_rim(contact, time, touching, (*events, *undecided))
+        if isinstance(following, (Flight, Status)):
+            return replace(resolved, state=state)
+        if not sticks:
+            return replace(resolved, next=TipOnset(contact, edge, direction), state=state)
         if isinstance(following, ContactMode):
             onset = TipOnset(contact, following, direction)
             return replace(resolved, next=onset, state=state)
@@ -744,9 +755,24 @@ class Automaton:
             velocity = (u + SLOWEST_ON_FACE * p, v + SLOWEST_ON_FACE * q, sinking)
             onset = TipOnset(contact, edge, direction, planar)
             return replace(resolved, next=onset, state=state._replace(velocity=velocity))
-        if isinstance(following, Flight):
-            return replace(resolved, state=state)
         return resolved
+
+    def _strike_rim(
+        self, contact: Top, time: float, state: State, events: tuple[Event, ...]
+    ) -> Transition:
+        """Collide without approach where friction has jammed the rim of a face; `state` leans onto
+        the rim.
+        """
+        try:
+            struck, rebounds = collision(state, 0.0, contact)
+        except ArithmeticError as error:
+            return failed("The impulse of the impact", error, state, events)
+        impulse, lost = float(struck.impulse), float(struck.energy_lost)
+        hit = Event(EventKind.IMPACT, time, impulse, lost, contact.number, struck.steps)
+        flat = onto_face(struck.state, contact)
+        if rebounds:
+            return Transition((*events, hit), Flight(contact, Start.REBOUND), flat)
+        return self.from_flat(contact, time, flat, (*events, hit))
 
     def _after_tipping(self, mode: Mode, end: ModeEnd, _: float) -> Transition:
         """Return the mode of a body that has tipped over its rim."""

@@ -53,8 +53,9 @@ rounding.
 """
 
 UNRESOLVED = 1e-13
-"""Last coefficient of the rates, in natural units, up to which a step is resolved; one that changes
-the numbers by rounding is, too: of the inverse of a small tilt the rates have few digits.
+"""Last coefficient of the rates, in natural units or of the largest, up to which a step is
+resolved; one that changes the numbers by rounding is, too: of the inverse of a small tilt the rates
+have few digits.
 """
 
 
@@ -164,8 +165,10 @@ class TipOnset(Mode):
             )
             largest = max([1.0, *[abs(each[STAGES - 1]) for each in points]])
             if moved <= UNMOVED * largest and max(map(abs, changes)) <= UNRESOLVED:
-                tails = [abs(coefficients(each)[STAGES - 1]) for each in rates]
-                is_resolved = max(tails) <= max(UNRESOLVED, UNMOVED / length)
+                legendre = [coefficients(each) for each in rates]
+                largest = max([1.0, *[abs(each[0]) for each in legendre]])
+                tail = max([abs(each[STAGES - 1]) for each in legendre])
+                is_resolved = tail <= largest * max(UNRESOLVED, UNMOVED / length)
                 return rates if is_resolved and self._lasts(points) else None
         return None
 
