@@ -329,6 +329,15 @@ def test_random_problems_agree_with_differences(seed):
         )
 
 
+def test_a_metric_that_the_run_does_not_have_says_why_it_has_no_derivative():
+    """A top that hardly spins does not turn over, and has no time at which it does."""
+    slopes = tt.sensitivities(tt.presets.report_problem(spin=5.0), 0.2, ["friction.mu"], samples=2)
+    assert np.isnan(slopes["turnover_time"].item())
+    assert "first rises past a right angle" in slopes["turnover_time"].attrs["reason"]
+    assert slopes["reason"].item() == ""
+    assert "reason" not in slopes["final_tilt"].attrs
+
+
 @pytest.mark.slow
 def test_slip_that_is_about_to_end_for_long_is_the_reason_for_no_derivatives():
     """A patch creeps, and the time left to the end of slip hardly changes for a while."""

@@ -26,6 +26,9 @@ beside it go through its events.
 
 TURN = 2.0 * np.pi
 
+NO_NUMBER = "not a number in the run itself: {}"
+"""Why a metric has no derivatives that is not a number in the run itself."""
+
 
 def sensitivities(
     problem: Problem,
@@ -65,7 +68,8 @@ def sensitivities(
         (`event_axis`, `event_angular_momentum`, `event_velocity`, `event_height`). The unit of each
         is that of the variable over that of the field, which the coordinate `parameter_units` has.
         Where a derivative does not exist it is NaN from there on, and `reason`, by parameter, says
-        why.
+        why. A metric that the run itself does not have, such as the time of turning over where it
+        does not turn over within the duration, has none either: its attribute `reason` says so.
 
     Raises
     ------
@@ -170,6 +174,8 @@ def _labelled(
             "long_name": f"derivative of {one.attrs.get('long_name', name)}",
             "numerator_units": one.attrs.get("units", "1"),
         }
+        if not one.dims and np.isnan(one.values):
+            attributes["reason"] = NO_NUMBER.format(one.attrs.get("long_name", name))
         variables[name] = (("parameter", *one.dims), values, attributes)
     variables["reason"] = (("parameter",), np.array(reasons, dtype=object).astype(str))
     coordinates = {
