@@ -58,7 +58,7 @@ class Lanes:
     ) -> None:
         self.tolerance, self.banded, self.settled = tolerance, band is not None, settled
         self.slots = slots = Slots(launches, stepper, band, samples)
-        self.crossings, self.checkpoints = (
+        self.transitions, self.checkpoints = (
             LaneTransitions(slots, tolerance, band is not None),
             list[Checkpoint](),
         )
@@ -67,7 +67,7 @@ class Lanes:
             lanes = np.arange(len(slots.cell))
             slots.place(lanes, picked(launches.state, slots.cell), np.zeros(len(lanes)))
             slots.remaining[~slots.alive] = 0.0
-            self.crossings.launch(lanes[: len(launches)], launches.state)
+            self.transitions.launch(lanes[: len(launches)], launches.state)
             slots.look_ahead(lanes)
         else:
             slots.rows[: stepper.layout.remaining + 1] = resumed[:, slots.cell]
@@ -159,7 +159,7 @@ class Lanes:
         slots.held[lanes] = 0.0
         some = followed.fallen >= 0.0
         if some.any():
-            self.crossings.fall(
+            self.transitions.fall(
                 lanes[some], start[some] + span[some], followed.fallen[some].astype(np.intp)
             )
         slots.numbers[layout.turns, lanes] = np.isnan(slots.tip.turned[lanes])
@@ -205,9 +205,9 @@ class Lanes:
         if not len(lanes):
             return
         step = (window_start[layout.remaining, lanes] - slots.remaining[lanes]) / steps_taken
-        motion, numbers = self.crossings.motion, slots.numbers[: layout.parameters, lanes]
+        motion, numbers = self.transitions.motion, slots.numbers[: layout.parameters, lanes]
         stiff = is_stiff(motion, list(numbers), slots.rows[: motion.size, lanes].T, step)
-        self.crossings.follow_alone(lanes[stiff])
+        self.transitions.follow_alone(lanes[stiff])
 
     def _end_the_settled(self, closeness: float) -> None:
         """End the launches whose tilt is held."""

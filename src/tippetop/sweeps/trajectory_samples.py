@@ -35,10 +35,11 @@ SUMMED_UP: Mapping[str, Variable] = {
 }
 """Variables over time that are summed up along a run: for these a launch is followed by itself."""
 
-KINDS = tuple(EventKind)
-
 OF_THE_AXIS = {"tilt", "azimuth", "spin", "axis", "angular_momentum"}
 """Those of them that follow from axis and angular momentum alone."""
+
+KINDS = tuple(EventKind)
+"""Kinds of events, by the numbers that stand for them while launches are followed."""
 
 FLYING = 10
 """How many numbers the state of a flight has."""

@@ -2,8 +2,8 @@
 
 Read `steady` first: steady states and Jellett's integral. `stability`, `thresholds` and `groups`
 say which of them are stable, and `prediction` where a launch ends. `nutation`, `dissipation`,
-`nutation_decay`, `averaging` and `slow_time` have the slow flow under weak friction. `level`,
-`rolling` has circles and straight lines of bodies whose contact sticks, and `spectra` judges single
-states. `sleeping`, `stem`, `drilling` and `resting_center` treat other bodies and friction;
-`overview`, `prospects` and `advice` collect the results for people.
+`nutation_decay`, `averaging` and `slow_time` have the slow flow under weak friction. `level` has
+spins about a horizontal axis, `rolling` circles and straight lines of bodies whose contact sticks,
+and `spectra` judges single states. `sleeping`, `stem`, `drilling` and `resting_center` treat other
+bodies and friction; `overview`, `prospects` and `advice` collect the results for people.
 """
