@@ -117,11 +117,14 @@ def test_a_tilted_top_set_down_rests_up_to_the_tilt_that_the_resistance_holds(ti
     assert (float(run["end_time"]) < 1e-9) is rests
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "friction",
-    [tt.ViscousFriction(mu=0.3), tt.RegularizedCoulombFriction(mu=0.3)],
-    ids=["viscous", "smoothed"],
+    [
+        pytest.param(tt.ViscousFriction(mu=0.3), id="viscous", marks=pytest.mark.slow),
+        pytest.param(
+            tt.RegularizedCoulombFriction(mu=0.3), id="smoothed", marks=pytest.mark.campaign
+        ),  # stiff: a minute
+    ],
 )
 def test_an_inverted_top_under_a_smooth_law_stops_rolling_and_stands(friction):
     problem = REPORT.replace({"launch.spin": 155.0}).model_copy(

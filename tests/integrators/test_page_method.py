@@ -38,7 +38,7 @@ def test_its_steps_are_those_of_scipys_method():
     [
         "hull coulomb and rolling sliding",
         "spheroid ellipsoidal sticking",
-        pytest.param("hull viscous two", marks=pytest.mark.slow),  # long to compile
+        pytest.param("hull viscous two", marks=pytest.mark.campaign),  # a minute to compile
     ],
 )
 def test_motions_of_tops_end_where_scipys_do(name):
