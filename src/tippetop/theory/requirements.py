@@ -82,11 +82,16 @@ def require_creep(top: Top) -> None:
             Described("this one"),
             "a shape that touches in one point when its axis is vertical",
         )
+    require_smooth_friction(top, "a spin about the vertical")
+
+
+def require_smooth_friction(top: Top, motion: str) -> None:
+    """Raise `InvalidInput` if rolling resistance or dry friction of a point leaves a motion without
+    a linear one beside it; the message names the motion.
+    """
     if top.rolling_resistance is not None:
         arm = top.rolling_resistance.length
-        raise InvalidInput(
-            "rolling_resistance", arm, "0: with it a spin about the vertical has no linear motion"
-        )
+        raise InvalidInput("rolling_resistance", arm, f"0: with it {motion} has no linear motion")
     if sticks(top):
         raise InvalidInput(
             "friction",

@@ -37,7 +37,7 @@ from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.theory.derivatives import derivative, jacobian
-from tippetop.theory.requirements import creeps, require_creep, sticks
+from tippetop.theory.requirements import creeps, require_creep, require_smooth_friction, sticks
 from tippetop.theory.steady import (
     VERTICAL_SPINS,
     SteadyKind,
@@ -215,13 +215,11 @@ def _linear(
     k).
     """
     units = Units(*(float(unit) for unit in natural_units(top)))
-    if kind not in VERTICAL_SPINS and not has_spectrum(kind, top):
-        raise InvalidInput(
-            "friction",
-            Described("this law"),
-            "one without torque, by which slip never ends: no other has a linear motion about a"
-            " precession",
-        )
+    if kind not in VERTICAL_SPINS:
+        require_smooth_friction(top, "a precession")
+        if not top.torque_free:
+            accepted = "one without torque: no precession is steady under this one"
+            raise InvalidInput("friction", Described("this law"), accepted)
     scaled = natural(drilling(top, spin) if kind in VERTICAL_SPINS else top)
     angles = Angles(tilt, 0.0, 0.0, precession * units.time, spin * units.time, (0.0, 0.0))
     state = state_from_angles(angles, scaled, np)
