@@ -198,11 +198,11 @@ class FaceStrike:
         span, turning = (1.0 + restitution) * compression, turning_of_face(state.momentum, top)
         mode = self._mode((-turning[0] / compression, -turning[1] / compression))
         slip = slip_of_face(state, top)
-        moving = still(state, slip, state.momentum[2])
+        moving = only_slipping(state, slip, state.momentum[2])
         elapsed, steps, tips = 0.0, 0, False
         while elapsed < span and not tips:
             if is_set_valued(top.friction) and self._rests(moving, -sinking):
-                moving = still(state, (0.0, 0.0), 0.0)
+                moving = only_slipping(state, (0.0, 0.0), 0.0)
                 held = replace(mode, slips=False).forces(mode.numbers(moving))
                 x, y, _ = held.force
                 if can_hold(held.force, top):
@@ -210,16 +210,16 @@ class FaceStrike:
                     elapsed = elapsed if tips else span
                     continue
                 factor = SLOWEST_ON_FACE * sinking * (x * x + y * y) ** -0.5
-                moving = still(state, (factor * x, factor * y), 0.0)
+                moving = only_slipping(state, (factor * x, factor * y), 0.0)
             if not mode.at_rim and mode.tipping(mode.numbers(moving)) <= 0.0:
-                tips, mode = self._tips(mode, moving)
+                tips, mode = self._struck_or_goes_on(mode, moving)
                 continue
             for segment in mode.segments(elapsed, moving, span, unnamed_integrator()):
                 elapsed, moving, steps = segment.end_time, segment.end_state, steps + segment.steps
                 if segment.mode_end is not None and segment.mode_end.cause == FAILURE:
                     raise Unsolved(f"in an impact of a face {segment.mode_end.detail}")
                 if segment.mode_end is not None and segment.mode_end.cause == TIPPING:
-                    tips, mode = self._tips(mode, moving)
+                    tips, mode = self._struck_or_goes_on(mode, moving)
         part = 1.0 - elapsed / compression if tips else -restitution
         after = self._with_turning(state, moving, part)
         return PressedFace(after, elapsed, compression, steps, tips)
@@ -258,9 +258,10 @@ class FaceStrike:
         up = state.axis[2]
         return (up * lean[0], up * lean[1])
 
-    def _tips(self, mode: FaceMode, moving: State) -> tuple[bool, FaceMode]:
-        """Return whether the rim is struck where the pressure has come to it, and the mode that
-        else goes on, as friction at the rim could not tip the body.
+    def _struck_or_goes_on(self, mode: FaceMode, moving: State) -> tuple[bool, FaceMode]:
+        """Return whether the rim is struck where the pressure has come to it, and the mode of the
+        face from there on: the same one if the rim is struck, else that in which the pressure stays
+        at the rim, as friction there could not tip the body.
         """
         turns = isinstance(mode, StruckFace)
         if mode.at_rim or turns or tipping_direction(moving, self.top) is not None:
@@ -332,8 +333,10 @@ def face_impact(state: State, restitution: float, top: Top, law_type: Any) -> Fa
     return struck._replace(energy_lost=lost, rebounds=rebounds)
 
 
-def still(state: State, velocity: Horizontal, momentum: Scalar) -> State:
-    """Return the state of a body that slips and drills so, and neither sinks nor turns beside."""
+def only_slipping(state: State, velocity: Horizontal, momentum: Scalar) -> State:
+    """Return a state with this horizontal velocity and angular momentum about the vertical, and
+    without normal velocity and tilting.
+    """
     return state._replace(momentum=(0.0, 0.0, momentum), velocity=(*velocity, 0.0))
 
 
