@@ -51,11 +51,13 @@ def test_a_class_makes_one_diagram(lab: Lab) -> None:
     tilt = float(tt.simulate(tt.presets.report_problem(spin=50.0), 12.0, samples=2)["final_tilt"])
     code = page.locator(".mine").inner_text()
     assert code == f"50 {tilt * 57.29577951308232:.1f}"
-    page.locator(".classroom textarea").last.fill(f"{code}\n155 179.9\nnothing\n")
+    page.locator(".classroom textarea:not(.links)").fill(f"{code}\n155 179.9\nnothing\n")
     assert page.locator(".scatter .dot").count() == 2
     assert "lines 3" in page.locator(".classroom [role=alert]").inner_text()
     address = page.locator(".codes a").last.get_attribute("href")
     assert address is not None
+    page.get_by_role("combobox", name="Language").select_option("de")
+    page.locator(".mine", has_text=code.replace(".", ",")).wait_for()
     group = lab(address.partition("#")[2])
     group.launched("problem.launch.spin === 150")
 

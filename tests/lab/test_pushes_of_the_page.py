@@ -16,6 +16,10 @@ def test_a_push_goes_on_from_the_moment_that_is_shown(lab: Lab) -> None:
     visitor.pause(2.0)
     before = visitor.ask(TILTS)
     page.get_by_text("while it spins").click()
+    visitor.pause(6.0)
+    page.get_by_text("go back before its end").wait_for()
+    assert page.get_by_role("button", name="Do it at 6 s").is_disabled(), "and it says why"
+    visitor.pause(2.0)
     page.get_by_label("Strength of the push").fill("50")
     page.get_by_role("button", name="Do it at 2 s").click()
     visitor.wait(PUSHED)

@@ -4,7 +4,7 @@ import { useMemo } from "preact/hooks";
 import { encode } from "uqr";
 
 import { Copy } from "./copy.jsx";
-import { t } from "./i18n.js";
+import { decimal, t } from "./i18n.js";
 import { FIRST_CLASS, launchQuery } from "./link.js";
 import { readResults, resultCode, resultLink, spinsOf } from "./results.js";
 import { changed } from "./setup.js";
@@ -25,6 +25,17 @@ export function Classroom({ lab }) {
   return (
     <div class="classroom">
       <p>{t("class.intro")}</p>
+      <Mine lab={lab} />
+      <label class="choice">
+        <span>{t("class.paste")}</span>
+        <textarea
+          rows={6}
+          placeholder={["155 179.9", "50 86.1"].map(written).join("\n")}
+          value={state.results}
+          onInput={(event) => set({ results: event.target.value })}
+        />
+      </label>
+      <Results text={state.results} setup={setup} units={units} />
       <div class="row">
         <Count name="groups" value={state.groups} least={2} most={MOST_GROUPS} set={set} />
         <Count name="low" value={state.low} most={HIGHEST} set={set} unit={unitOf("spin", units)} />
@@ -42,29 +53,21 @@ export function Classroom({ lab }) {
         </p>
       )}
       <Codes lab={lab} state={state} />
-      <Mine lab={lab} />
-      <label class="choice">
-        <span>{t("class.paste")}</span>
-        <textarea
-          rows={6}
-          placeholder={"155 179.9\n50 86.1"}
-          value={state.results}
-          onInput={(event) => set({ results: event.target.value })}
-        />
-      </label>
-      <Results text={state.results} setup={setup} units={units} />
     </div>
   );
 }
+
+// A result code with the language's decimal sign.
+const written = (code) => code.split(" ").map(decimal).join(" ");
 
 function Count({ name, value, least = 0, most, set, unit = { name: "", size: 1 } }) {
   const change = ({ target }) => {
     const entered = Number(target.value) * unit.size || least;
     const inside = Math.min(Math.max(entered, least), most);
-    target.value = written(inside);
+    target.value = inUnits(inside);
     set({ [name]: inside });
   };
-  const written = (number) => Number((number / unit.size).toPrecision(4));
+  const inUnits = (number) => Number((number / unit.size).toPrecision(4));
   return (
     <label class="choice">
       <span>{t(`class.${name}`, { unit: unit.name })}</span>
@@ -72,7 +75,7 @@ function Count({ name, value, least = 0, most, set, unit = { name: "", size: 1 }
         type="number"
         class="dial-number"
         step="any"
-        value={written(value)}
+        value={inUnits(value)}
         onChange={change}
       />
     </label>
@@ -137,7 +140,7 @@ function Code({ text }) {
 function Mine({ lab }) {
   if (!lab.track || lab.isAwaited) return null;
   const { header } = lab.track;
-  const code = resultCode(header);
+  const code = written(resultCode(header));
   const link = () => resultLink(placeOfPage(), launchQuery(lab.state.setup), header);
   return (
     <div class="row">
@@ -152,8 +155,15 @@ function Mine({ lab }) {
 
 function Results({ text, setup, units }) {
   const { points, wrong, others } = readResults(text, setup);
+  const read = points.length;
+  const all = read + wrong.length + others.length;
   return (
     <>
+      {all > 0 && (
+        <p class="hint" role="status">
+          {t("class.read", { read, all })}
+        </p>
+      )}
       {wrong.length > 0 && (
         <p class="refused" role="alert">
           {t("class.wrong", { lines: wrong.join(", ") })}

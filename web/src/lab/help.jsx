@@ -40,17 +40,16 @@ export function Help({ onClose }) {
       <p>{t("help.model")}</p>
       <h3>{t("help.symbols")}</h3>
       <dl>
-        {symbols.map((key) => {
-          const { symbol, name, help } = part(`quantities.${key}`);
-          return (
+        {[...symbols.map((key) => part(`quantities.${key}`)), ...part("help.letters")].map(
+          ({ symbol, name, help }) => (
             <>
               <dt>{symbol}</dt>
               <dd>
                 <b>{name}.</b> {help}
               </dd>
             </>
-          );
-        })}
+          ),
+        )}
       </dl>
       <p>{t("help.keys")}</p>
       <p>{t("help.link")}</p>

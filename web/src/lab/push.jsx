@@ -32,8 +32,8 @@ export function Push({ lab }) {
   // Who changes the table alone does not push the top.
   const step = strength ?? (mu === null && lifted === null ? FIRST_STEP : 0);
   const impulse = isFree ? Number(((step / STEPS) * most).toPrecision(3)) : 0;
-  const isPossible = time < (lab.track?.header.asked ?? 0) && pushes.length < MOST_PUSHES;
   const isEmpty = impulse === 0 && mu === null && lifted === null;
+  const why = lab.track && whyNot(time < lab.track.header.asked, pushes.length, isEmpty);
   const push = () => {
     const at = momentOf(lab.player.time);
     const now = { time: at, impulse, direction: DIRECTIONS[direction], mu, slope: lifted };
@@ -81,13 +81,21 @@ export function Push({ lab }) {
         onChange={lift}
       />
       <div class="row">
-        <button type="button" class="strong" disabled={!isPossible || isEmpty} onClick={push}>
+        <button type="button" class="strong" disabled={why !== null} onClick={push}>
           {t("push.now", { time: digits(time, 3) })}
         </button>
       </div>
+      {why && <p class="hint">{t(`push.why.${why}`, { most: MOST_PUSHES })}</p>}
       <Pushes lab={lab} pushes={pushes} />
     </details>
   );
+}
+
+// Why nothing can be done at a moment; null if it can.
+function whyNot(isBeforeEnd, count, isEmpty) {
+  if (!isBeforeEnd) return "end";
+  if (count >= MOST_PUSHES) return "many";
+  return isEmpty ? "nothing" : null;
 }
 
 const rangeOf = (dial) => [placeOf(dial, dial.low), placeOf(dial, dial.high), dial.step];
