@@ -1,5 +1,6 @@
 """What a class brings is read, and what it has done stays, on every screen and on paper."""
 
+import base64
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -255,3 +256,75 @@ def test_step_seven_says_nothing_that_has_not_happened(lab: Lab) -> None:
     visitor.ask("() => tippetopLab.player.seek(tippetopLab.player.turnsOver + 0.7)")
     page.locator(".answer").wait_for()
     assert re.search("leaves the table", page.locator(".tt-words").inner_text())
+
+
+NARROW = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
+# What lies below the stage, above the bar of the question, and how far apart, pixels.
+ROOM = """(selectors) => {
+  const stage = document.querySelector(".stage").getBoundingClientRect().bottom;
+  const bar = document.querySelector(".question .row").getBoundingClientRect().top;
+  return selectors.flatMap((selector) => [...document.querySelectorAll(selector)]).map((one) => {
+    const { top, bottom } = one.getBoundingClientRect();
+    return [top - stage, bar - bottom];
+  });
+}"""
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_a_step_stands_under_the_picture(lab: Lab, language: str) -> None:
+    visitor = lab(f"lang={language}", **NARROW)
+    page = visitor.page
+    answers = visitor.ask(ROOM, [".question label"])
+    # In German the first screen has room for the question alone.
+    hidden = [below < 0 or above < -1 for below, above in answers]
+    assert language == "de" or not any(hidden)
+    page.locator(".question .row button").last.click()
+    page.locator(".watching button").click()
+    page.locator(".answer").wait_for()
+    page.locator(".story-nav .strong").click()
+    page.wait_for_timeout(400)
+    step, title = visitor.ask(ROOM, [".story .step", ".story h2"])
+    assert 0 <= step[0] < 20
+    assert 0 < title[0] < 60
+
+
+def test_whole_lines_are_told_and_a_tap_tells_the_rest(lab: Lab) -> None:
+    visitor = lab("tab=launch&launch.spin=175&duration=20", **NARROW)
+    words = visitor.page.locator(".tt-words")
+    sizes = """() => { const words = document.querySelector(".tt-words");
+      const { paddingTop } = getComputedStyle(words);
+      const line = parseFloat(getComputedStyle(words.querySelector("strong")).lineHeight);
+      return [(words.clientHeight - parseFloat(paddingTop)) / line,
+        words.scrollHeight - words.clientHeight]; }"""
+    lines, hidden = visitor.ask(sizes)
+    assert lines == pytest.approx(3, abs=0.1)
+    assert hidden > 5
+    words.tap()
+    assert visitor.ask(sizes)[1] <= 1
+    assert visitor.ask(sizes)[0] > 3.5
+
+
+def test_no_curve_shows_ahead_of_the_mark(lab: Lab) -> None:
+    visitor = lab("step=0", device_scale_factor=2, **NARROW)
+    page = visitor.page
+    page.locator(".question .row button").last.click()
+    visitor.wait("() => tippetopLab.player.playing && !tippetopLab.isAwaited")
+    visitor.pause(1.0)
+    page.locator(".plots figure").first.scroll_into_view_if_needed()
+    left, right, top = visitor.ask("""() => {
+      const over = document.querySelector(".plots .u-over");
+      const box = over.getBoundingClientRect();
+      return [over.querySelector(".plot-now").getBoundingClientRect().left, box.right, box.top];
+    }""")
+    clip = {"x": left + 4, "y": top - 2, "width": right - left - 5, "height": 6}
+    shot = base64.b64encode(page.screenshot(clip=clip)).decode()
+    colours = """async (shot) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${shot}`;
+      await image.decode();
+      const copy = new OffscreenCanvas(image.width, image.height).getContext("2d");
+      copy.drawImage(image, 0, 0);
+      const { data } = copy.getImageData(0, 0, image.width, image.height);
+      return new Set(new Uint32Array(data.buffer)).size;
+    }"""
+    assert visitor.ask(colours, shot) == 1, "nothing but paper"

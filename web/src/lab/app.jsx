@@ -151,7 +151,15 @@ function Stage({ lab, dark }) {
       lab.raise();
     }
     if (!lab.track) lab.pending = lab.state;
-    return () => player.dispose();
+    const stage = host.current.parentElement;
+    const tell = () =>
+      document.documentElement.style.setProperty("--stage", `${stage.offsetHeight}px`);
+    const resizing = new ResizeObserver(tell);
+    resizing.observe(stage);
+    return () => {
+      resizing.disconnect();
+      player.dispose();
+    };
   }, []);
   useEffect(() => lab.player?.setTheme(dark ? "dark" : "light"), [dark]);
   return <div class="player" ref={host} />;

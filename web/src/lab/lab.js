@@ -31,6 +31,12 @@ export function showStage() {
   if (top < 0 || bottom > innerHeight) stage.scrollIntoView({ block: "start" });
 }
 
+/** Show an element: directly under the stage where that stays in view, else by as little scrolling as it takes. */
+export function showUnderStage(element) {
+  const { position } = getComputedStyle(document.querySelector(".stage"));
+  element.scrollIntoView({ block: position === "sticky" ? "start" : "nearest" });
+}
+
 export class Lab extends EventTarget {
   constructor() {
     super();

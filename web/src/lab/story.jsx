@@ -6,7 +6,7 @@ import { SPAN } from "../player/climax.js";
 import { stillness } from "../player/player.js";
 import { ARROWS, SHOWN } from "../player/scene.js";
 import { part, t } from "./i18n.js";
-import { showStage } from "./lab.js";
+import { showStage, showUnderStage } from "./lab.js";
 import { PRESETS, preset } from "./presets.js";
 import { STEPS } from "./steps.js";
 import { TorquePicture } from "./torque.jsx";
@@ -38,17 +38,25 @@ export function Story({ lab }) {
     lab.addEventListener("time", look);
     return () => lab.removeEventListener("time", look);
   }, [isGuessed, isSeen, number]);
+  const top = useRef();
+  const last = useRef(number);
+  useEffect(() => {
+    if (last.current !== number) showUnderStage(top.current);
+    last.current = number;
+  }, [number]);
   const go = (next) => {
     setStep(lab, next, { step: next, guess: null });
   };
   return (
     <article class="story">
-      <p class="step">{t("story.step", { step: number + 1, all: STEPS.length })}</p>
-      <progress
-        max={STEPS.length}
-        value={number + 1}
-        aria-label={t("story.step", { step: number + 1, all: STEPS.length })}
-      />
+      <div class="step" ref={top}>
+        <p>{t("story.step", { step: number + 1, all: STEPS.length })}</p>
+        <progress
+          max={STEPS.length}
+          value={number + 1}
+          aria-label={t("story.step", { step: number + 1, all: STEPS.length })}
+        />
+      </div>
       <h2>{words.title}</h2>
       <p>{words.text}</p>
       <Question
