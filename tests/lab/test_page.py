@@ -128,7 +128,7 @@ def test_what_happens_is_spoken_as_it_happens(lab: Lab) -> None:
       new MutationObserver(() => heard.push(line.textContent)).observe(line, {
         childList: true, characterData: true, subtree: true });
       const { player } = tippetopLab;
-      player.speed = 4;
+      player.speed = 1;
       player.slow(false);
       player.seek(4);
       player.toggle(true);
