@@ -82,16 +82,18 @@ def require_creep(top: Top) -> None:
             Described("this one"),
             "a shape that touches in one point when its axis is vertical",
         )
-    require_smooth_friction(top, "a spin about the vertical")
+    require_smooth_friction(top)
 
 
-def require_smooth_friction(top: Top, motion: str) -> None:
-    """Raise `InvalidInput` if rolling resistance or dry friction of a point leaves a motion without
-    a linear one beside it; the message names the motion.
+def require_smooth_friction(top: Top) -> None:
+    """Raise `InvalidInput` if rolling resistance or dry friction of a point leaves a steady state
+    without a linear motion beside it.
     """
     if top.rolling_resistance is not None:
         arm = top.rolling_resistance.length
-        raise InvalidInput("rolling_resistance", arm, f"0: with it {motion} has no linear motion")
+        raise InvalidInput(
+            "rolling_resistance", arm, "0: with it a steady state has no linear motion beside it"
+        )
     if sticks(top):
         raise InvalidInput(
             "friction",

@@ -216,7 +216,7 @@ def _linear(
     """
     units = Units(*(float(unit) for unit in natural_units(top)))
     if kind not in VERTICAL_SPINS:
-        require_smooth_friction(top, "a precession")
+        require_smooth_friction(top)
         if not top.torque_free:
             accepted = "one without torque: no precession is steady under this one"
             raise InvalidInput("friction", Described("this law"), accepted)
