@@ -138,8 +138,7 @@ def can_hold(force: Vector, top: Top) -> bool:
     """Return whether dry friction can exert a force on a face that does not drill, of floats."""
     x, y, normal = force
     friction: Any = top.friction
-    holding = getattr(friction, "static_mu", friction.mu)
-    return bool(x * x + y * y <= (holding * normal) ** 2)
+    return bool(friction.reserve(normal, (x, y), 0.0) >= 0.0)
 
 
 def face_field(axis: Vector, momentum: Vector, velocity: Horizontal, top: Top) -> OuterForces:
