@@ -100,6 +100,26 @@ def test_a_heading_may_have_the_unit(tmp_path):
         mass(tmp_path / "a.csv")
 
 
+@pytest.mark.parametrize(
+    "heading",
+    ["r (furlong),z", "r_furlong,z", "r in furlong,z", "r ft,z ft", "r,z (1/64 in)", "r (Zoll),z"],
+)
+def test_units_that_profiles_do_not_have_are_not_taken_for_metres(tmp_path, heading):
+    (tmp_path / "a.csv").write_text(f"{heading}\n0,0\n60,0\n60,50\n0,50")
+    with pytest.raises(tt.InvalidInput, match="a heading with a unit of m, cm, mm or in"):
+        mass(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize(
+    "heading", ["r_outer,z", "r (from the axis),z", "radius in mm,height in mm"]
+)
+def test_words_in_headings_are_no_units(tmp_path, heading):
+    (tmp_path / "a.csv").write_text(f"{heading}\n0,0\n60,0\n60,50\n0,50")
+    volume = math.pi * 60.0**2 * 50.0
+    stated = {} if "mm" in heading else {"unit": "mm"}
+    assert mass(tmp_path / "a.csv", **stated) == pytest.approx(volume, rel=1e-12)
+
+
 @pytest.mark.parametrize("heading", ["d (mm),z (mm)", "Durchmesser,z", "Ø,z"])
 def test_diameters_are_not_taken_for_radii(tmp_path, heading):
     (tmp_path / "a.csv").write_text(f"{heading}\n0,0\n60,0\n60,50\n0,50")

@@ -13,6 +13,7 @@ from tippetop.lathe.workpiece import UNITS, Workpiece
 from tippetop.support.errors import Described, FileTrouble, InvalidInput
 from tippetop.support.files import in_words, made_of, named, path_of, read_text
 from tippetop.support.parsing import parse_toml
+from tippetop.support.units import exponents_of, named_unit
 
 MESHES = (".stl", ".obj", ".ply", ".off")
 """Suffixes of meshes."""
@@ -22,11 +23,17 @@ DRAWINGS = (".svg", ".dxf", *MESHES)
 
 ACCEPTED = "a workpiece in TOML, or a profile in CSV, SVG, DXF, STL, OBJ, PLY or OFF"
 
-HEADING_UNIT = re.compile(r"[(\[{/_,\s](mm|cm|m|in|inch|inches)\b[)\]}]?\s*$", re.IGNORECASE)
-"""Unit at the end of a heading, such as "r (mm)", "r [mm]", "r/mm" or "r_mm"."""
+HEADING_UNIT = re.compile(
+    r"(?:[(\[{]\s*(?P<bracketed>[^)\]}]*?)\s*[)\]}]|/\s*(?P<slash>[^/]*?)|\sin\s+(?P<word>\S+))\s*$",
+    re.IGNORECASE,
+)
+"""Unit at the end of a heading, such as "r (mm)", "r [mm]", "r/mm" or "r in mm"."""
 
-OTHER_UNIT = re.compile(r"[(\[{/]\s*([^\W\d_]+\W?)\s*[)\]}]?\s*$")
-"""Word that stands in a heading where a unit stands."""
+LAST_WORD = re.compile(r"[_,\s]\s*([^\W\d_]+)\s*$")
+"""Last word of a heading, which may be a unit, as in "r_mm", or part of a name, as in "r_outer"."""
+
+UNIT_NAMES = {**{unit: unit for unit in UNITS}, "inch": "in", "inches": "in"}
+"""Units of profiles by what headings call them, in lower case."""
 
 DIAMETER = re.compile(r"\s*(d|dia|diam|diameter|durchmesser|[ØøΦ⌀∅])\b", re.IGNORECASE)
 """Heading of a column of diameters, of which half are the distances from the axis."""
@@ -256,13 +263,12 @@ def _unit_of(heading: list[str], path: Path) -> str | None:
         if DIAMETER.match(cell):
             accepted = "distances from the axis, half the diameters, in a column such as r (mm)"
             raise InvalidInput("heading", cell, accepted, file=named(path))
-    matches = [HEADING_UNIT.search(f" {cell}") for cell in heading]
-    for cell, match in zip(heading, matches, strict=True):
-        if match is None and OTHER_UNIT.search(f" {cell}"):
+    texts = [(cell, _unit_text(cell)) for cell in heading]
+    for cell, text in texts:
+        if text and text not in UNIT_NAMES:
             accepted = "a heading with a unit of m, cm, mm or in, such as r (mm)"
             raise InvalidInput("heading", cell, accepted, file=named(path))
-    units = {match[1].lower() for match in matches if match}
-    units = {"in" if unit.startswith("in") else unit for unit in units}
+    units = {UNIT_NAMES[text] for _, text in texts if text}
     if len(units) > 1:
         raise InvalidInput(
             "heading",
@@ -271,6 +277,22 @@ def _unit_of(heading: list[str], path: Path) -> str | None:
             file=named(path),
         )
     return units.pop() if units else None
+
+
+def _unit_text(cell: str) -> str:
+    """Return what stands in a heading where a unit stands, in lower case; empty for nothing."""
+    match = HEADING_UNIT.search(f" {cell}")
+    if match:
+        text = match["bracketed"] or match["slash"] or match["word"] or ""
+        is_remark = " " in text and not any(sign.isdigit() for sign in text)
+        return "" if is_remark else text.lower()
+    last = LAST_WORD.search(f" {cell}")
+    if last is None:
+        return ""
+    word = last[1].lower()
+    unit = named_unit(last[1]) if word not in UNIT_NAMES else None
+    is_length = unit is not None and unit.exponents == exponents_of("m")
+    return word if word in UNIT_NAMES or is_length else ""
 
 
 def _numbers(number: int, row: list[str], path: Path) -> tuple[float, ...]:
