@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass, field
+from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from tippetop.fit.residual_statistics import (
     correlation_time,
     durbin_watson,
     exceeds_noise,
+    line_probability,
 )
 from tippetop.fit.search import Minimum, Search
 from tippetop.integrators.base import Array
@@ -32,6 +34,10 @@ WEAK = 1.0
 
 SHARE = 0.3
 """Least component of a number in an undetermined direction to be named."""
+
+ENTANGLED = 0.1
+"""Error of a number with another one held, over its error, below which the two count as known only
+together. Friction and spin of usual films stay above twice that."""
 
 OUTLIER = 5.0
 """Standardised residual from which on a number counts as an outlier: one in a million random ones
@@ -294,7 +300,10 @@ def result_of(search: Search, best: Minimum, rivals: Sequence[Minimum]) -> FitRe
         2.0 * parameters - 2.0 * log_likelihood,
         float(np.log(count)) * parameters - 2.0 * log_likelihood,
         undetermined,
-        _cautions(search, best, residuals, degrees, near),
+        (
+            *_cautions(search, best, residuals, degrees, near),
+            *_entangled(names, numbers, covariance),
+        ),
         tuple(dict(zip(names, rival.numbers.tolist(), strict=True)) for rival in near),
         search.runs,
         model.measurements,
@@ -404,6 +413,10 @@ def _cautions(
     is_stated = search.is_noise_known
     if search.stopped:
         words.append(f"{search.stopped}: there may be a better fit")
+    if search.is_local:
+        words.append(
+            "only the minimum next to the start was looked for (one start): others may fit better"
+        )
     for rival in rivals:
         numbers = ", ".join(
             f"{name} = {number:.4g}"
@@ -445,15 +458,46 @@ def _cautions_of_column(label: str, column: Array, is_stated: bool) -> list[str]
             f" {OUTLIER:g} standard deviations, {np.abs(column).max():.3g} at most: check them"
         )
     if are_correlated(column):
+        length = correlation_time(column)
         effect = (
             "the errors are too small"
-            if is_stated
-            else f"the errors take the data for {len(column) / correlation_time(column):.2g}"
-            " independent ones"
+            if is_stated or length == 1.0
+            else f"the errors take the data for {len(column) / length:.2g} independent ones"
         )
         words.append(
-            f"the residuals of {label} are not random (Durbin-Watson {durbin_watson(column):.2f}):"
-            f" the model lacks something, and {effect}"
+            f"the residuals of {label} are not random (Durbin-Watson {durbin_watson(column):.2f},"
+            f" strongest line: probability {line_probability(column):.1g}): the model lacks"
+            f" something, such as another law of friction, and {effect}"
+        )
+    return words
+
+
+def _entangled(names: Sequence[str], numbers: Array, covariance: Array) -> list[str]:
+    """Return in words which pairs of numbers are known only together, and what is known of them.
+
+    Of a and b with relative errors s and t and correlation r, the product a b^(-r s/t) has the
+    relative error s sqrt(1 - r^2), the least of all exponents. Of numbers that are not positive it
+    is a sum, and the errors are absolute.
+    """
+    words = list[str]()
+    for first, second in combinations(range(len(names)), 2):
+        pair = covariance[np.ix_([first, second], [first, second])]
+        if not np.isfinite(pair).all() or not np.diag(pair).all():
+            continue
+        s, t = np.sqrt(np.diag(pair))
+        correlation = float(pair[0, 1] / (s * t))
+        narrowing = max(1.0 - correlation**2, 0.0) ** 0.5
+        if narrowing >= ENTANGLED:
+            continue
+        a, b = names[first], names[second]
+        if min(numbers[first], numbers[second]) > 0.0:
+            s, t = s / numbers[first], t / numbers[second]
+            combination = f"{a} · {b}^{-correlation * s / t:.2g} to {100.0 * s * narrowing:.2g} %"
+        else:
+            combination = f"{a} {-correlation * s / t:+.3g} · {b} to {s * narrowing:.2g}"
+        words.append(
+            f"{a} and {b} are known only together (correlation {correlation:.4f}): the data"
+            f" determine {combination}"
         )
     return words
 

@@ -163,6 +163,8 @@ class Search:
         Function that is called with the progress.
     stopped
         Why the search was stopped; empty if it was not.
+    is_local
+        Whether only the minimum next to the problem's own numbers was sought.
     """
 
     def __init__(
@@ -175,7 +177,7 @@ class Search:
         self.low = np.append(low, np.full(instruments, -np.inf))
         self.high = np.append(high, np.full(instruments, np.inf))
         self.callback: Callable[[FitProgress], None] | None = None
-        self.most_runs, self.stopped = MOST_RUNS, ""
+        self.most_runs, self.stopped, self.is_local = MOST_RUNS, "", False
         self._runs_of_parts = 0
         self._best = list[Minimum]()
         self._leading: Array | None = None
@@ -234,6 +236,7 @@ class Search:
         followed = FOLLOWED_OF_EVENTS if self.model.is_event.all() else FOLLOWED
         try:
             if starts == 1:
+                self.is_local = True
                 self._best = [self.refine(self._own_start())]
                 return self._best
             for reach in reaches:
