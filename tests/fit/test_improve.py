@@ -166,6 +166,7 @@ def test_a_bound_on_the_mass_is_kept():
         ({"mass": 1e-5}, "mass"),
         ({"mass": -1.0}, "mass: -1"),
         ({"density": 0.0}, "density: 0"),
+        ({"density": "unobtainium"}, "density: .unobtainium. is no known material"),
         ({"wall": "1 s"}, "wall: 1 s is a time"),
         ({"stem": -1e-3}, "stem: -0.001"),
         ({"goal": "fastest", "spin": -5.0}, "spin: -5"),

@@ -2,6 +2,7 @@
 
 import json
 import math
+from importlib import import_module
 
 import pytest
 from typer.testing import CliRunner
@@ -104,6 +105,21 @@ def test_the_problem_is_one_that_is_simulated(files):
     assert "  # kg: mass of the body\n" in written
     (files / "problem.toml").write_text(written)
     assert tt.Problem.read(files / "problem.toml").body == tt.Body.turned(files / "ball.toml")
+
+
+def test_the_problem_is_the_one_of_its_runs(files, monkeypatch):
+    """What is written is what is followed to say from which spin a body stands."""
+    followed = []
+
+    def least(problem):
+        followed.append(problem)
+        return 100.0
+
+    monkeypatch.setattr(import_module("tippetop.fit.standing"), "least_standing_spin", least)
+    assert json.loads(said("top.toml", "--json"))["stands_from"] == 100.0
+    (files / "problem.toml").write_text(said("top.toml", "--toml"))
+    written = tt.Problem.read(files / "problem.toml")
+    assert written.replace({"launch.spin": followed[0].launch.spin}) == followed[0]
 
 
 def test_files_are_written_once(files):

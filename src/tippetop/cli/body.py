@@ -11,16 +11,16 @@ import typer
 import tippetop as tt
 from tippetop.cli.options import (
     DRAWINGS,
-    NUMBER,
     Force,
     Json,
-    number_of,
+    density_in,
+    density_option,
     number_option,
     write_figure,
 )
 from tippetop.cli.problem import commented_toml
 from tippetop.cli.terminal import facts, listing, show, show_json, spelled
-from tippetop.support.errors import Described, InvalidInput, within_part
+from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.files import place_for, require_ending
 
 FILE_ENDINGS = {
@@ -31,6 +31,9 @@ FILE_ENDINGS = {
     "urdf": (".urdf",),
 }
 """Accepted suffixes of files."""
+
+SPIN = 155.0
+"""Axial spin of a launch in a file that is written, rad/s: that of the report."""
 
 ROUND_FEET = ("sphere", "eccentric_sphere", "spheroid", "oval")
 """Kinds of surfaces on which a body can be spun so that friction raises it."""
@@ -46,11 +49,7 @@ def body(
     ],
     density: Annotated[
         str | None,
-        typer.Option(
-            metavar=NUMBER,
-            help="Density, kg/m^3, or as in '0.7 g/cm^3'; or a material, as in 'beech' or, printed"
-            " with an infill, 'PLA 20 %'.",
-        ),
+        density_option("Density"),
     ] = None,
     unit: Annotated[
         str | None,
@@ -119,7 +118,8 @@ def body(
     """
     from rich.markup import escape  # noqa: PLC0415 - slow to import
 
-    from tippetop.lathe.files import read_with_remarks  # noqa: PLC0415 - slow to import
+    from tippetop.fit.standing import drilling_launch  # noqa: PLC0415 - slow to import
+    from tippetop.lathe.files import read_with_remarks  # noqa: PLC0415
 
     requested = {"plot": plot, "stl": stl, "3mf": three_mf, "mjcf": mjcf, "urdf": urdf}
     files = {kind: path for kind, path in requested.items() if path is not None}
@@ -127,7 +127,7 @@ def body(
         require_ending(f"--{kind}", path, FILE_ENDINGS[kind])
         place_for(path, force)
     options = {
-        "density": number_of("--density", _density(density), "kg m-3"),
+        "density": density_in(density),
         "unit": unit,
         "tolerance": tolerance,
     }
@@ -141,7 +141,7 @@ def body(
         )
     if as_toml:
         turned = tt.Body.turned(workpiece, whole=whole)
-        written = commented_toml(tt.presets.report_problem().model_copy(update={"body": turned}))
+        written = commented_toml(drilling_launch(turned, SPIN))
     else:
         summary = {"remarks": [*remarks, *_fit(workpiece)], **_summary(workpiece, whole, runs)}
     outputs = [_write(workpiece, path, force, whole) for path in files.values()]
@@ -156,17 +156,6 @@ def body(
         show(*_sentences(summary, upside_down), *map(escape, not_mapped), files=paths)
     if not as_toml and summary["trouble"]:
         raise typer.Exit(2)
-
-
-def _density(text: str | None) -> str | None:
-    """Return the density of a material by name as a number; other texts unchanged."""
-    from tippetop.lathe.materials import density_of  # noqa: PLC0415 - slow to import
-
-    try:
-        density = density_of(text)
-    except InvalidInput as error:
-        raise within_part(error, "--density") from None
-    return density if density is None else str(density)
 
 
 def _fit(workpiece: "tt.Workpiece") -> list[str]:
@@ -186,21 +175,25 @@ def _summary(workpiece: "tt.Workpiece", whole: bool, runs: bool) -> dict[str, An
     `trouble` is the reason for which it cannot be simulated, or None. `stands_from` is the least
     spin from which runs turn over and stand, rad/s, inf if there is none; None without runs.
     """
-    from tippetop.problem.implausible import warn_if_implausible  # noqa: PLC0415 - slow to import
+    from tippetop.fit.standing import (  # noqa: PLC0415 - slow to import
+        drilling_launch,
+        least_standing_spin,
+    )
+    from tippetop.problem.implausible import warn_if_implausible  # noqa: PLC0415
 
     mass, center, I1, I3 = workpiece.mass_properties
     trouble, stands_from = None, None
     try:
         turned = tt.Body.turned(workpiece, whole=whole)
         if runs and turned.shapes[0].kind in ROUND_FEET and not _is_top_heavy(turned):
-            stands_from = _standing_spin(turned)
+            stands_from = least_standing_spin(drilling_launch(turned))
     except InvalidInput as error:
         trouble = str(error)
         # Mass and size are in doubt whatever the surfaces: those of a ball around the body.
         size = 0.5 * workpiece.outline.size
         ball = tt.Sphere(radius=size, center=0.0)
         turned = tt.Body(mass=mass, shape=ball, I1=0.4 * mass * size**2, I3=0.4 * mass * size**2)
-    warn_if_implausible(tt.presets.report_problem().model_copy(update={"body": turned}))
+    warn_if_implausible(drilling_launch(turned, SPIN))
     hull = workpiece.hull
     return {
         "mass": mass,
@@ -221,15 +214,6 @@ def _is_top_heavy(turned: "tt.Body") -> bool:
     """Return whether a body, set upright without spin, does not return there when tilted."""
     surface = turned.shapes[0].surface
     return bool(surface.height(math.cos(0.05)) <= surface.height(1.0) + 1e-12 * surface.size)
-
-
-def _standing_spin(turned: "tt.Body") -> float:
-    """Return the least spin from which runs of a body on a drilling patch stand, rad/s."""
-    from tippetop.fit.standing import least_standing_spin  # noqa: PLC0415 - slow to import
-
-    law = tt.ContensouFriction(mu=0.3, patch_radius=5e-4)
-    launch = tt.Launch(tilt=0.1, spin=1.0)
-    return least_standing_spin(tt.Problem(body=turned, friction=law, launch=launch))
 
 
 def _surfaces(workpiece: "tt.Workpiece") -> list[dict[str, Any]]:
@@ -307,12 +291,12 @@ def _write(
 ) -> tuple[Sequence[Path], Sequence[str]]:
     """Write a file; return the written files, and remarks on what their format cannot express."""
     from tippetop.engines.bodies import save_mjcf, save_urdf  # noqa: PLC0415 - slow to import
+    from tippetop.fit.standing import drilling_launch  # noqa: PLC0415
 
     ending = path.suffix.lower()
     if ending in (*FILE_ENDINGS["mjcf"], *FILE_ENDINGS["urdf"]):
-        patch = tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal")
-        body = tt.Body.turned(workpiece, whole=whole)
-        problem = tt.Problem(body=body, friction=patch, launch=tt.Launch(tilt=0.1, spin=155.0))
+        launch = drilling_launch(tt.Body.turned(workpiece, whole=whole), SPIN)
+        problem = launch.replace({"friction.pressure": "ellipsoidal"})
         return (save_mjcf if ending == ".xml" else save_urdf)(problem, path, force)
     if ending in FILE_ENDINGS["plot"]:
         from tippetop.figures.section import section  # noqa: PLC0415 - slow to import

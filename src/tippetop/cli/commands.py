@@ -15,6 +15,7 @@ from tippetop.cli.critical import critical
 from tippetop.cli.dataset import dataset
 from tippetop.cli.engines import engines
 from tippetop.cli.fit import fit
+from tippetop.cli.improve import improve
 from tippetop.cli.lab import lab
 from tippetop.cli.problem import problem
 from tippetop.cli.reference import reference
@@ -107,6 +108,7 @@ for command in (
     lab,
     problem,
     body,
+    improve,
     reference,
     engines,
     dataset,

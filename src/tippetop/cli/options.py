@@ -258,6 +258,20 @@ def number_option(kind: type[int] | type[float], text: str) -> Any:
     return typer.Option(parser=number, metavar=metavar, help=text)
 
 
+def density_option(text: str) -> Any:
+    """Return an option that takes a density or the name of a material, with its help text."""
+    suffix = ", kg/m^3, or as in '0.7 g/cm^3'; or a material, as in 'beech' or, printed with an"
+    return typer.Option(metavar=NUMBER, help=f"{text}{suffix} infill, 'PLA 20 %'.")
+
+
+def density_in(text: str | None) -> float | None:
+    """Return the density of the option --density, kg/m^3, or None."""
+    from tippetop.lathe.materials import material_density  # noqa: PLC0415 - slow to import
+
+    density = material_density("--density", text)
+    return density if isinstance(density, float) else number_of("--density", density, "kg m-3")
+
+
 def number_of(option: str, text: str | None, units: str) -> float | None:
     """Return the number of an option in SI, converted from its unit if it has one, or None."""
     if text is None:

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from tippetop.fit.standing import (
+    DRILLING,
     FALLEN,
     LONGEST_RISE,
     is_upside_down,
@@ -18,9 +19,10 @@ from tippetop.fit.standing import (
 )
 from tippetop.integrators.base import Array
 from tippetop.lathe.design import LONGEST, bowl_with_stem, rim_height
+from tippetop.lathe.materials import material_density
 from tippetop.lathe.workpiece import Workpiece
 from tippetop.problem.bodies import Body
-from tippetop.problem.frictions import ContensouFriction, Friction
+from tippetop.problem.frictions import Friction
 from tippetop.problem.launch import Launch
 from tippetop.problem.problem import Problem, top_of
 from tippetop.problem.shapes import Sphere
@@ -146,7 +148,7 @@ def improve(
     *,
     friction: Friction | None = None,
     spin: float | None = None,
-    density: float = 700.0,
+    density: float | str = 700.0,
     mass: float | None = None,
     radius: float | None = None,
     wall: float = 1e-3,
@@ -175,7 +177,7 @@ def improve(
     spin
         Spin of the launches, rad/s; None for 1.3 times the least.
     density
-        Density of the material, kg/m^3.
+        Density of the material, kg/m^3, or its name, such as "beech" or "PLA 20 %".
     mass, radius
         The largest mass, kg, and radius of the sphere, m; None for any mass, and the body's radius.
     wall, stem
@@ -219,13 +221,14 @@ def improve(
         raise InvalidInput("trials", trials, "a whole number, 0 or more")
     if not isinstance(body, (Body, Workpiece)):
         raise InvalidInput("body", body, "a Body or a Workpiece, such as presets.REPORT")
-    density, wall = positive_in("density", density, "kg m-3"), positive_in("wall", wall, "m")
+    by_name = material_density("density", density)
+    density, wall = positive_in("density", by_name, "kg m-3"), positive_in("wall", wall, "m")
     stem, gravity = positive_in("stem", stem, "m"), positive_in("gravity", gravity, "m s-2")
     mass = None if mass is None else positive_in("mass", mass, "kg")
     radius = None if radius is None else positive_in("radius", radius, "m")
     spin = None if spin is None else positive_in("spin", spin, "rad s-1")
     tilt = positive_in("tilt", tilt, "rad")
-    law = ContensouFriction(mu=0.3, patch_radius=5e-4) if friction is None else friction
+    law = DRILLING if friction is None else friction
     start = Body.turned(body, whole=whole) if isinstance(body, Workpiece) else body
     _require_top(start, gravity, tilt)
     size = start.shapes[0].surface.size if radius is None else radius

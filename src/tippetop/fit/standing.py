@@ -4,11 +4,18 @@ import math
 from collections.abc import Callable
 
 from tippetop.mechanics.top import natural_units
+from tippetop.problem.bodies import Body
+from tippetop.problem.frictions import ContensouFriction
+from tippetop.problem.launch import Launch
 from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import NEAR_POLE
 from tippetop.results.motion_state import MotionState
 from tippetop.run import simulate
 from tippetop.theory.advice import standing_spin
+
+DRILLING = ContensouFriction(mu=0.3, patch_radius=5e-4)
+"""Friction of runs that show whether a body stands, where nobody states another: wood on wood, with
+a patch as large as a ball's of a few grams."""
 
 LONGEST_RISE = 20.0
 """Seconds of a run within which a top must have turned over and come upright on its other end."""
@@ -38,6 +45,11 @@ spin, for impacts decide how a top comes onto its stem."""
 
 USUAL = 6.0
 """Spin of the first run where theory has none, in natural units: about that of fingers."""
+
+
+def drilling_launch(body: Body, spin: float = 1.0) -> Problem:
+    """Return a launch of a body as the runs have it that show whether it stands."""
+    return Problem(body=body, friction=DRILLING, launch=Launch(tilt=0.1, spin=spin))
 
 
 def is_upside_down(state: MotionState) -> float:

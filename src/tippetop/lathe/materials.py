@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BeforeValidator
 
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import InvalidInput, within_part
 from tippetop.support.suggestions import likely
 
 DENSITIES = {
@@ -71,6 +71,16 @@ def density_of(value: Any) -> Any:
     if not 0.0 < percent <= 100.0:
         raise InvalidInput("", value, "a share of the volume above 0 % and up to 100 %")
     return DENSITIES[name] * percent / 100.0
+
+
+def material_density(field: str, value: Any) -> Any:
+    """Return the density of a material by name, kg/m^3, as `density_of`; a refusal has the field's
+    name.
+    """
+    try:
+        return density_of(value)
+    except InvalidInput as error:
+        raise within_part(error, field) from None
 
 
 MATERIAL = BeforeValidator(density_of)
