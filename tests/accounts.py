@@ -103,6 +103,16 @@ LAUNCHES: dict[str, tuple[tt.Problem, float]] = {
         20.0,
     ),
     "cylinder that rocks": (of(CYLINDER, tt.CoulombFriction(mu=0.9), tilt=0.1, spin=0.0), 2.0),
+    "cylinder on its rim": (
+        of(
+            CYLINDER.model_copy(update={"I3": 1e-5}),
+            tt.CoulombFriction(mu=0.9),
+            tilt=0.0,
+            spin=60.0,
+            slip=(0.9, 0.0),
+        ),
+        0.5,
+    ),
     "coin": (of(tt.presets.COIN, COULOMB, tilt=1.2, spin=0.0, gap=0.01), 5.0),
     "ring top": (of(RING_TOP, tt.CoulombFriction(mu=0.2), tilt=0.001, spin=50.0), 5.0),
     "ring top, falls": (of(RING_TOP, tt.ViscousFriction(mu=0.3), tilt=0.1, spin=3.0), 20.0),

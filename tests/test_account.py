@@ -185,6 +185,15 @@ def test_a_cylinder_rocks_on_its_rim_until_it_lies() -> None:
     assert told == {"count": int((kinds == "impact").sum()), "time": down}
 
 
+def test_a_cylinder_that_drills_comes_to_roll_on_its_rim() -> None:
+    run = followed("cylinder on its rim")
+    kinds, when = run["event_kind"].values.tolist(), run["event_time"].values.tolist()
+    times = dict(zip(kinds, when, strict=True))
+    account = describe(run)
+    assert named(account, "pressed_at_rim") == {"time": times["pressure at the rim"]}
+    assert named(account, "rolls_on_rim") == {"time": times["rolls on its rim"]}
+
+
 def test_two_balls_stand_on_the_ball_that_touches() -> None:
     told = named(describe(followed("two balls, dry")), "stands_on_sphere")
     assert told == {"surface": 0, "length": 0.2}

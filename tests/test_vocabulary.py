@@ -190,7 +190,15 @@ def test_the_glossary_lists_the_names_that_are_used() -> None:
             "is_sampled",
         ),
         *(one.name.lower() for kind in (tt.Outcome, tt.Status) for one in kind),
-        *("sliding", "sticking", "flight", "sliding_flat", "resting_flat", "sliding_on_1"),
+        *(
+            "sliding",
+            "sticking",
+            "flight",
+            "sliding_flat",
+            "rolling_flat",
+            "resting_flat",
+            "sliding_on_1",
+        ),
     }
     assert len(listed) > 40
     assert {outcome.name.lower() for outcome in tt.Outcome} <= listed

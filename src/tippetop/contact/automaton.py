@@ -16,7 +16,14 @@ from tippetop.contact.closed_pair import Before, ClosedPair, rolling_of
 from tippetop.contact.collision import SLOWEST_REBOUND, collision
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_on_two
 from tippetop.contact.face_impact import LEAN, NOT_TIPPED, SLOWEST_ON_FACE, face_impact
-from tippetop.contact.face_mode import STOPPED, TIPPING, FaceMode
+from tippetop.contact.face_mode import (
+    STOPPED,
+    TIPPING,
+    FaceMode,
+    HeldAtRim,
+    PressedAtRim,
+    mode_at_rim,
+)
 from tippetop.contact.flight import LANDING, TOUCHING, Flight, Start
 from tippetop.contact.guards import (
     BRANCH,
@@ -685,23 +692,30 @@ class Automaton:
     def _after_sliding(self, mode: Mode, end: ModeEnd, time: float) -> Transition:
         """Return what follows where the pressure has come to the rim of a face that slides."""
         assert isinstance(mode, FaceMode)
-        if mode.at_rim and pressure_reserve(mode.forces(mode.numbers(end.state)), mode.top) > 0.0:
-            return Transition((), replace(mode, at_rim=False), end.state)
+        face = FaceMode(mode.top, mode.law_type)
+        if mode != face and face.tipping(face.numbers(end.state)) > 0.0:
+            return Transition((), face, end.state)
         return self._tip_sliding(mode, time, end.state, ())
 
     def _tip_sliding(
         self, mode: FaceMode, time: float, state: State, events: tuple[Event, ...]
     ) -> Transition:
-        """Return the mode in which a body that slides on its face begins to tip over its rim; it
-        slides on where friction at the rim could not tip it.
+        """Return the mode in which a body that slides on its face begins to tip over its rim, or
+        goes on upon its face where friction at the rim could not tip it.
         """
-        direction = tipping_direction(state, mode.top)
-        if direction is not None:
+        following = mode_at_rim(mode, state)
+        if following is None:
+            direction = tipping_direction(state, mode.top)
+            if direction is None:
+                return Transition(events, Status.FAILED, state, NOT_TIPPED)
             return self._tip(mode.top, time, state, direction, events)
-        at_rim = replace(mode, at_rim=True)
-        if not mode.at_rim and at_rim.tipping(at_rim.numbers(state)) > 0.0:
-            return Transition(events, at_rim, state)
-        return Transition(events, Status.FAILED, state, NOT_TIPPED)
+        if isinstance(following, HeldAtRim):
+            event = Event(EventKind.ROLLS_ON_RIM, time, surface=mode.top.number)
+            return Transition((*events, event), following, state)
+        if not isinstance(mode, PressedAtRim):
+            event = Event(EventKind.PRESSED_AT_RIM, time, surface=mode.top.number)
+            events = (*events, event)
+        return Transition(events, following, state)
 
     def _tip(
         self,

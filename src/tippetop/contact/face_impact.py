@@ -28,7 +28,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple, Self
 
 from tippetop.contact.collision import SLOWEST_REBOUND
-from tippetop.contact.face_mode import TIPPING, FaceMode
+from tippetop.contact.face_mode import TIPPING, FaceMode, mode_at_rim
 from tippetop.contact.impact import Impact, impact, restored_impact
 from tippetop.contact.mode import FAILURE
 from tippetop.integrators.unnamed import unnamed_integrator
@@ -73,11 +73,11 @@ MOST_STRIKES = 200
 """Strikes of the rim in one impact, after which a run is given up."""
 
 NOT_TIPPED = (
-    "friction moves the pressure to the rim of the face, where by the law of friction at a point it"
-    " begins to slip just then: no motion of a rigid body fits both; with less friction, or another"
-    " contact.face_pressure, the body goes on"
+    "friction has moved the pressure to a point of the rim at which slip only begins, and the slope"
+    " or the air makes it faster: it is not known how the body tips there; with less friction, or"
+    " another contact.face_pressure, it goes on"
 )
-"""Detail of the status where what is assumed of the pressure of a face has no sequel."""
+"""Detail of the status where it is not known how a body goes on upon the rim of its face."""
 
 
 class FaceImpact(NamedTuple):
@@ -211,7 +211,7 @@ class FaceStrike:
                     continue
                 factor = SLOWEST_ON_FACE * sinking * (x * x + y * y) ** -0.5
                 moving = only_slipping(state, (factor * x, factor * y), 0.0)
-            if not mode.at_rim and mode.tipping(mode.numbers(moving)) <= 0.0:
+            if mode.tipping(mode.numbers(moving)) <= 0.0:
                 tips, mode = self._struck_or_goes_on(mode, moving)
                 continue
             for segment in mode.segments(elapsed, moving, span, unnamed_integrator()):
@@ -263,10 +263,10 @@ class FaceStrike:
         face from there on: the same one if the rim is struck, else that in which the pressure stays
         at the rim, as friction there could not tip the body.
         """
-        turns = isinstance(mode, StruckFace)
-        if mode.at_rim or turns or tipping_direction(moving, self.top) is not None:
+        if isinstance(mode, StruckFace):
             return True, mode
-        return False, replace(mode, at_rim=True)
+        following = mode_at_rim(mode, moving)
+        return following is None, mode if following is None else following
 
     def _mode(self, turning: Horizontal) -> FaceMode:
         """Return the mode in which the face slips meanwhile, of which a body that does not turn has

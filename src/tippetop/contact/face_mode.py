@@ -2,26 +2,39 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar, Self
 
-from tippetop.contact.mode import COMPLETED, FAILURE, IntegratedMode, ModeEnd, Reaction, Segment
+from tippetop.contact.mode import (
+    COMPLETED,
+    FAILURE,
+    IntegratedMode,
+    ModeEnd,
+    Reaction,
+    Segment,
+    numbered,
+)
 from tippetop.contact.transient import straight
 from tippetop.integrators.base import Arc, Guard, Integrator, Motion
 from tippetop.integrators.dense import as_array
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.face_motion import (
     FaceForces,
+    PressureSplit,
     drilling_rate,
     face_field,
     face_radii,
     face_speed,
+    held_at_rim,
     lying_flat,
+    outward_square,
     pressure_reserve,
     resting_on_face,
     rim_reserve,
     sliding_on_face,
+    slip_that_tips,
+    tipping_direction,
 )
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surfaces.surface import support_at
@@ -43,6 +56,11 @@ velocities and times shrink alike. Steps are as accurate as their first speed: o
 stage the ratio of slip and drilling would lose digits; a much shorter one costs steps.
 """
 
+AT_LIMIT = 1e-10
+"""Reserve of the rim, in natural units, that is rounding where the outward slip has come to that at
+which a body tips: the slip is a difference of squares.
+"""
+
 LEAST_TIME = 1e-12
 """Time that slip and drilling have left at which they are followed no further, in natural units, or
 of the time of the run: they fall in a straight line, and the place is known to its square. Steps
@@ -58,11 +76,6 @@ class FaceMode(IntegratedMode):
     """The class of the law of the face (see `tippetop.mechanics.face_motion.law_of_face`)."""
     slips: bool = True
     """Whether the face slips or drills; else friction holds it."""
-    at_rim: bool = False
-    """Whether the pressure has come to the rim by the friction of the face, but no friction at the
-    rim could tip the body over it. The centre of pressure is taken to stay at the rim then, and
-    friction to be that of the whole face, which it overstates.
-    """
 
     name: ClassVar[str] = "face"
     further: ClassVar[int] = 0
@@ -76,7 +89,7 @@ class FaceMode(IntegratedMode):
     @property
     def form(self) -> str:
         """Modes of the same form and tops read the same from their numbers."""
-        return f"{self.status} at rim" if self.at_rim else self.status
+        return self.status
 
     @property
     def lasting(self) -> bool:
@@ -115,8 +128,6 @@ class FaceMode(IntegratedMode):
 
     def tipping(self, y: Row) -> Scalar:
         """Return what falls through zero where the face holds the body no longer."""
-        if self.at_rim:
-            return rim_reserve(SlidingState.unpack(y), self.forces(y), self.top)
         return pressure_reserve(self.forces(y), self.top)
 
     def rates(self, y: Row) -> tuple[Scalar, ...]:
@@ -133,7 +144,7 @@ class FaceMode(IntegratedMode):
         (u, v), (p, q, _) = now.velocity, forces.force
         power = p * u + q * v + forces.torque * drilling_rate(now.momentum, self.top)
         torque, couple = (*forces.couple, forces.torque), (0.0, 0.0, forces.torque)
-        reserve = None if self.at_rim else pressure_reserve(forces, self.top)
+        reserve = pressure_reserve(forces, self.top)
         return Reaction(forces.force, torque, power, couple, reserve=reserve)
 
     def segments(
@@ -200,6 +211,109 @@ class FaceMode(IntegratedMode):
         return Segment(self, solution, ended, ModeEnd(STOPPED, ended))
 
 
+@dataclass(frozen=True)
+class PressedAtRim(FaceMode):
+    """A face that slides where its friction has moved the pressure to the rim, but no friction at
+    the rim could tip the body over it.
+
+    The centre of pressure is taken to stay at the rim, and friction to be that of the whole face,
+    which it overstates.
+    """
+
+    slip: Scalar = 1.0
+    """The outward slip of a point of the rim at which the body would tip (`slip_that_tips`)."""
+
+    further: ClassVar[int] = 1
+
+    @classmethod
+    def of(cls, mode: FaceMode, state: State) -> "PressedAtRim":
+        """Return the mode that follows a face that slides, in a state."""
+        speed = face_speed(state.velocity[:2], state.momentum, mode.top)
+        drilling = float(drilling_rate(state.momentum, mode.top))
+        slip = slip_that_tips(state.axis, drilling, float(speed), mode.top)
+        return cls(mode.top, mode.law_type, slip=slip)
+
+    @property
+    def form(self) -> str:
+        """Modes of the same form and tops read the same from their numbers."""
+        return f"{self.status} at rim"
+
+    @property
+    def parameters(self) -> tuple[Scalar, ...]:
+        """The numbers of the top, and the slip."""
+        return (*self.top.numbers, self.slip)
+
+    def without_tops(self) -> Self:
+        """Return the mode without its parameters."""
+        return replace(super().without_tops(), slip=1.0)
+
+    def with_numbers(self, kind: Kind, numbers: Sequence[Scalar]) -> Self:
+        """Return the mode of tops of a kind whose parameters are these numbers."""
+        return replace(super().with_numbers(kind, numbers), slip=numbers[kind.numbers])
+
+    def tipping(self, y: Row) -> Scalar:
+        """Return what falls through zero where friction at the rim could tip the body."""
+        return rim_reserve(SlidingState.unpack(y), self.slip, self.top)
+
+    def reaction(self, y: Row) -> Reaction:
+        """Return the contact force and torque; the friction of the whole face needs more couple
+        than there is.
+        """
+        return super().reaction(y)._replace(reserve=None)
+
+
+@dataclass(frozen=True)
+class HeldAtRim(PressedAtRim):
+    """A body on its face that keeps the outward slip of a point of its rim at which friction there
+    could just tip it (see `tippetop.mechanics.face_motion.held_at_rim`).
+
+    Under dry friction that point rests, and the body rolls on its rim with its axis vertical,
+    without loss: the limit of rolling on the rim at a small tilt.
+    """
+
+    @property
+    def status(self) -> str:
+        """Name of the motion in a result, without the surface that touches."""
+        return "rolling_flat"
+
+    def split(self, y: Row) -> PressureSplit:
+        """Return how the pressure is shared."""
+        return held_at_rim(SlidingState.unpack(y), self.slip, self.law_type, self.top)
+
+    def forces(self, y: Row) -> FaceForces:
+        """Return what the table does."""
+        return self.split(y).forces
+
+    def tipping(self, y: Row) -> Scalar:
+        """Return what falls through zero where friction of the face makes the slip no faster."""
+        return self.split(y).on_face
+
+    def holding(self, y: Row) -> Scalar:
+        """Return what falls through zero where the pressure at the point makes the slip faster."""
+        return -self.split(y).at_point
+
+
+def mode_at_rim(mode: FaceMode, state: State) -> FaceMode | None:
+    """Return the mode of a body that stays on its face where friction has moved the pressure to the
+    rim; None if it tips over its rim, or it is not known that it stays.
+
+    From a slip at which friction at the rim could just tip it, a body tips only if that friction
+    makes the slip faster.
+    """
+    at_rim, y = PressedAtRim.of(mode, state), mode.numbers(state)
+    if at_rim.tipping(y) > AT_LIMIT:
+        return at_rim
+    if not isinstance(mode, PressedAtRim) and tipping_direction(state, mode.top) is not None:
+        return None
+    outward = max(0.0, float(outward_square(SlidingState.unpack(y), mode.top)))
+    slip = 0.0 if is_set_valued(mode.top.friction) else outward**0.5
+    held = HeldAtRim(mode.top, mode.law_type, slip=slip)
+    split = held.split(y)
+    if split.on_face <= AT_LIMIT:
+        return at_rim
+    return held if split.at_point <= 0.0 else None
+
+
 def in_units(numbers: Sequence[Scalar], unit: Scalar) -> tuple[Scalar, ...]:
     """Return the numbers of a face's motion in a unit of velocity and time, with lengths as they
     are.
@@ -234,7 +348,13 @@ def face_motion(form: Any, kind: Kind) -> Motion:
         state = SlidingState.unpack(y)
         return face_speed(state.velocity, state.momentum, mode(numbers).top) - STAGE
 
+    def holding(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> Scalar:
+        rate: Scalar = mode(numbers).holding(in_natural_units(y, numbers))
+        return rate
+
     guards = [Guard(TIPPING, tipping)]
+    if isinstance(form, HeldAtRim):
+        guards.append(Guard(numbered(TIPPING, 0), holding))
     if is_set_valued(kind.example.friction):
         guards.append(Guard(SLOWED, slowed))
     size = len(SlidingState((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0)).pack())

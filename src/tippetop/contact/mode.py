@@ -79,6 +79,8 @@ class EventKind(Enum):
     INDETERMINATE = "indeterminate force"
     LIES_DOWN = "lies down"
     TIPS = "tips over its rim"
+    PRESSED_AT_RIM = "pressure at the rim"
+    ROLLS_ON_RIM = "rolls on its rim"
     RESTS = "rests"
 
 

@@ -410,6 +410,7 @@ class Run:
             guard = number if number < stepper.guards else None
             if guard is None:
                 fall_time += BEYOND * float(np.spacing(abs(self.time) + fall_time))
+                fall_time = self._until_moved(rows[steps], span, fall_time)
             else:
                 polished = self._polished(rows[steps], span, guard, fall_time)
                 guard = None if polished is None else guard
@@ -487,6 +488,16 @@ class Run:
             fall += move
             if abs(move) <= EXACT * span:
                 break
+        return fall
+
+    def _until_moved(self, row: Array, span: float, fall: float) -> float:
+        """Return the time from a branch's change on at which rounding shows that the state has
+        moved; else the next step would end at the same change. It is within the step.
+        """
+        while fall < span and not np.any(
+            np.cumsum(self._at(row, fall / span), axis=1)[:, -1] - self._state
+        ):
+            fall = min(2.0 * fall, span)
         return fall
 
     def _at(self, row: Array, part: float) -> Array:

@@ -22,7 +22,13 @@ from tippetop.mechanics.vectors import Horizontal, Scalar, Vector
 
 AT_RIM = 1e-12
 """Part of its radius by which the centre of pressure may be within the rim, by rounding, where its
-guard says that it has come there.
+guard says that it has come there. Or part of its squared slip that may be left by rounding at a
+point of the rim that rests.
+"""
+
+SLIPS_TRIED, BISECTIONS = 40, 60
+"""How often the slips at which a law is asked whether its force tips a body are halved from the
+fastest: more slowly nothing tips. And how often the interval is halved in which it begins to.
 """
 
 
@@ -209,7 +215,7 @@ def tipping_direction(state: State, top: Top) -> Horizontal | None:
     drilled = outer * float(drilling_rate(state.momentum, top))
     square = float(u * u + v * v)
     outward = square - drilled * drilled
-    if not outward > 0.0:
+    if not outward > AT_RIM * square:
         return None
     slip = outward**0.5
     x, y = (slip * u - drilled * v) / square, (slip * v + drilled * u) / square
@@ -229,19 +235,123 @@ def pressure_reserve(forces: FaceForces, top: Top) -> Scalar:
     return normal * normal - (x * x + y * y) / (outer * outer)
 
 
-def rim_reserve(state: SlidingState, forces: FaceForces, top: Top) -> Scalar:
-    """Return what is positive while no point of the rim slips outwards so fast that the pressure
-    could all be there, where that of the face has come to the rim.
+def slip_that_tips(axis: Vector, drilling: float, fastest: float, top: Top) -> float:
+    """Return the least outward slip of a point of the rim at which friction there moves the
+    pressure to the rim, m/s, of floats; the fastest if there is none up to that.
 
-    At the point of `tipping_direction` the slip is sqrt(v^2 - (a1 w)^2). Dry friction there is mu N
-    from the start, and the pressure of the face has come to the rim by less. Other friction is
-    taken to be smaller than that of the middle as the slip is: exact of viscous friction, with
-    which the centre of pressure r moves as N r = -h F with F = -mu N (v + w z x r).
+    Parameters
+    ----------
+    axis
+        Axis, along or against the vertical.
+    drilling
+        Angular velocity about the vertical, rad/s: the law may depend on it.
+    fastest
+        The largest slip that is tried, m/s.
+    top
+        The body.
+    """
+    outer, height = float(face_radii(top.surface)[1]), float(support_at(axis, top.surface)[0])
+
+    def tips(slip: float) -> bool:
+        force = top.friction.traction((slip, 0.0), (0.0, 0.0, drilling))[0]
+        return bool(-height * force[0] >= outer)
+
+    slips = [fastest * 2.0 ** (number - SLIPS_TRIED) for number in range(SLIPS_TRIED + 1)]
+    largest = next((slip for slip in slips if tips(slip)), None)
+    if largest is None:
+        return fastest
+    least = 0.5 * largest if largest > slips[0] else 0.0
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (least + largest)
+        least, largest = (least, middle) if tips(middle) else (middle, largest)
+    return largest
+
+
+def outward_square(state: SlidingState, top: Top) -> Scalar:
+    """Return v^2 - (a1 w)^2, m^2/s^2: of the slip at the point of the rim that slips straight
+    outwards, if it is positive; else there is no such point.
     """
     (u, v), outer = state.velocity, face_radii(top.surface)[1]
-    drilled, square = outer * drilling_rate(state.momentum, top), u * u + v * v
-    outward = square - drilled * drilled
+    drilled = outer * drilling_rate(state.momentum, top)
+    return u * u + v * v - drilled * drilled
+
+
+def rim_reserve(state: SlidingState, slip: Scalar, top: Top) -> Scalar:
+    """Return what is positive while no point of the rim slips outwards so fast that friction there
+    could hold the pressure at the rim, where that of the face has come to the rim.
+
+    Dry friction can from the start of that slip, s. Other laws are asked for their force at a slip
+    without a root, (s0 + s^2 / s0) / 2: it is s at s = s0, and above it elsewhere.
+
+    Parameters
+    ----------
+    state
+        The state.
+    slip
+        A slip s0, m/s: the one of `slip_that_tips`.
+    top
+        The body.
+    """
+    outward = outward_square(state, top)
     if is_set_valued(top.friction):
         return -outward
-    (x, y, normal), height = forces.force, support_at(state.axis, top.surface)[0]
-    return outer * outer * normal * normal * square - height * height * (x * x + y * y) * outward
+    turning = (0.0, 0.0, drilling_rate(state.momentum, top))
+    force = top.friction.traction((0.5 * (slip + outward / slip), 0.0), turning)[0]
+    height = support_at(state.axis, top.surface)[0]
+    return face_radii(top.surface)[1] + height * force[0]
+
+
+class PressureSplit(NamedTuple):
+    """How the outward slip changes where the pressure is at one point of the rim, and elsewhere."""
+
+    at_point: Scalar
+    """Rate of `outward_square` where all the pressure is at the point that slips outwards, m^2/s^3.
+    """
+    on_face: Scalar
+    """The same where the pressure is that of the face."""
+    forces: FaceForces
+    """The forces that keep the outward slip: a share of each."""
+
+
+def held_at_rim(state: SlidingState, slip: Scalar, law_type: Any, top: Top) -> PressureSplit:
+    """Return the forces on a body at whose rim friction at one point could just hold the pressure,
+    and what they follow from.
+
+    At the point that slips straight outwards friction is a1 N / h then, towards the middle, and its
+    moment balances that of the pressure there. Such a force slows that slip down; friction of the
+    whole face makes it faster. A share of the pressure at the point and the rest on the face keep
+    it as it is. Under dry friction the slip is zero, and all the pressure is there: the body rolls
+    on its rim with its axis vertical, without loss.
+
+    Parameters
+    ----------
+    state
+        The state.
+    slip
+        The outward slip, sqrt(v^2 - (a1 w)^2), m/s.
+    law_type
+        The class of the face's law, of `law_of_face`.
+    top
+        The body.
+    """
+    axis, momentum, (u, v) = state
+    outer, drilling = face_radii(top.surface)[1], drilling_rate(momentum, top)
+    drilled, square = outer * drilling, u * u + v * v
+    normal, height = top.mass * top.gravity, support_at(axis, top.surface)[0]
+    factor = -outer * normal / (height * square)
+    point = factor * (slip * u - drilled * v), factor * (slip * v + drilled * u)
+    field = face_field(axis, momentum, (u, v), top)
+    (p, q, _), couple = field.force, field.couple[2]
+
+    def rate(power: Scalar, torque: Scalar) -> Scalar:
+        return 2.0 * (power / top.mass - outer * drilled * torque / top.axial_inertia)
+
+    face = sliding_on_face(axis, momentum, (u, v), law_type, top)
+    free = u * p + v * q
+    at_point = rate(free - slip * (outer * normal / height), couple)
+    on_face = rate(free + u * face.force[0] + v * face.force[1], couple + face.torque)
+    share = at_point / (at_point - on_face)
+    east = share * face.force[0] + (1.0 - share) * point[0]
+    north = share * face.force[1] + (1.0 - share) * point[1]
+    forces = forces_on_face(axis, (east, north), normal, share * face.torque, top)
+    return PressureSplit(at_point, on_face, forces)

@@ -211,7 +211,12 @@ def _onto_face(facts: Facts) -> list[Clause]:
 
     Of many the first and the last are told.
     """
-    names = {EventKind.LIES_DOWN: "lies_down", EventKind.TIPS: "tips_over"}
+    names = {
+        EventKind.LIES_DOWN: "lies_down",
+        EventKind.TIPS: "tips_over",
+        EventKind.PRESSED_AT_RIM: "pressed_at_rim",
+        EventKind.ROLLS_ON_RIM: "rolls_on_rim",
+    }
     clauses = _rocking_on_rim(facts)
     rocked = [clause.numbers["time"] for clause in clauses]
     happened = [event for event in facts.events if event.kind in names and event.time not in rocked]
