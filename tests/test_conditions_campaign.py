@@ -156,3 +156,15 @@ def test_random_bodies_keep_what_contact_keeps(seed: int, monkeypatch: pytest.Mo
     assert least.force >= LEAST
     assert least.friction >= LEAST
     assert float(run["energy_error"]) <= IMBALANCE
+
+
+@pytest.mark.parametrize("seed", [488, 851, 1195])
+@pytest.mark.filterwarnings("ignore::tippetop.Implausible")
+def test_what_is_left_of_slip_that_has_ended_in_an_impact_does_not_slip_on(seed: int) -> None:
+    """What is left is rounding of velocities a hundred times the one of approach, or lies across
+    the way in which slip falls.
+    """
+    problem, duration = problem_of(seed)
+    run = tt.simulate(problem, duration, samples=3)
+    assert run.attrs["status"] == "completed"
+    assert float(run["energy_error"]) <= IMBALANCE

@@ -41,6 +41,7 @@ P) = 0.
 # translate module: numbers
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -71,7 +72,7 @@ from tippetop.integrators.dense import as_array
 from tippetop.integrators.unnamed import unnamed_integrator
 from tippetop.mechanics.contacts.branches import on_branch, on_other_branch
 from tippetop.mechanics.contacts.forces import is_set_valued
-from tippetop.mechanics.contacts.slip_variables import come_to_rest, inner, scaled, size
+from tippetop.mechanics.contacts.slip_variables import come_to_rest, inner, size
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.impacts.struck_body import (
     FIRST,
@@ -571,41 +572,37 @@ class ImpactProcess:
 
     def _landed(self, impulse: Impulse, status: StruckStatus, cause: str, number: int) -> Impulse:
         """Return the impulse where slip, or rolling, has ended, or what held it has given way."""
-        if cause not in (ENDS, ROLLING_ENDS, BEGINS_SLIP, ROLLING_BEGINS):
-            return impulse
-        unit = self.unit(impulse, status)
         if cause in (BEGINS_SLIP, ROLLING_BEGINS):
-            return self._moved(impulse, unit, PAST)
-        if cause == ENDS and number == BOTH:
-            return self._both_ended(impulse)
-        velocities, change = (
-            self.body.velocities(impulse),
-            changed(self.body.contacts, unit.total),
-        )
+            return self._moved(impulse, self.unit(impulse, status), PAST)
         if cause == ENDS:
-            xi, rate = slips_at(self.body, velocities)[number], slips_at(self.body, change)[number]
-        else:
-            xi, rate = velocities[3:5], change[3:5]
-        along = inner(scaled(1.0 / size(xi), xi), rate)
-        return self._moved(impulse, unit, size(xi) / -along) if along < 0.0 else impulse
+            ended = (0, 1) if number == BOTH else (number,)
+            return self._ended(impulse, status, ended, is_rolling=False)
+        if cause == ROLLING_ENDS:
+            return self._ended(impulse, status, (), is_rolling=True)
+        return impulse
 
-    def _both_ended(self, impulse: Impulse) -> Impulse:
-        """Return the impulse after the one that ends what slip is left of both contacts, and keeps
-        the normal velocities.
+    def _ended(
+        self, impulse: Impulse, status: StruckStatus, ended: Sequence[int], is_rolling: bool
+    ) -> Impulse:
+        """Return the impulse after the one that ends what is left of the slip of some contacts, or
+        of rolling, and keeps the normal velocities.
         """
-        contacts = self.body.contacts
-        held = held_wrenches(contacts, (0, 1), (None, None), (0.0, 0.0))
-        tangents = [at_first(contacts, number, wrench) for number, wrench in held]
-        rows = [*tangents, NORMAL, at_first(contacts, 1, NORMAL)]
+        contacts, acts = self.body.contacts, acting(status.beside)
+        goes_on = (1.0, 0.0, 0.0)
+        slips = [None if number in ended else goes_on for number in (0, 1)]
+        held = held_wrenches(contacts, acts, slips, None if is_rolling else goes_on)
+        stopped = [at_first(contacts, number, wrench) for number, wrench in held]
+        rows = [*stopped, *[at_first(contacts, number, NORMAL) for number in acts]]
         velocities = self.body.velocities(impulse)
-        right = [-inner(row, velocities) for row in tangents]
+        right = [-inner(row, velocities) for row in stopped]
         columns = [changed(contacts, row) for row in rows]
         matrix = [[inner(row, column) for column in columns] for row in rows]
-        sizes = solve(matrix, [*right, 0.0, 0.0])
+        sizes = solve(matrix, [*right, *[0.0 for _ in acts]])
         total = impulse[:6]
         for size_of, row in zip(sizes, rows, strict=True):
             total = tuple([a + size_of * b for a, b in zip(total, row, strict=True)])
-        return (*total, impulse[FIRST] + sizes[-2], impulse[WORK])
+        first = sizes[len(stopped)] if 0 in acts else 0.0
+        return (*total, impulse[FIRST] + first, impulse[WORK])
 
     def stilled(self, impulse: Impulse, status: StruckStatus) -> State:
         """Return the state after an impulse, in which slip and rolling that are held on one contact

@@ -40,13 +40,8 @@ SLIDES, HELD, BEGINS = "slides", "held", "begins"
 """What slip, or rolling, does: it goes on, is held, or begins in a direction that it keeps."""
 
 NO_SLIP = 1e-13
-"""Slip, and rolling, that has ended, in units of the impact: more leaves out of the impact what
-friction still takes, less is rounding.
-"""
-
-ROUNDED = 10.0
-"""How many units of the impact a rounding of the body's velocities is counted as, if that is more
-than one: the velocities of a fast body that strikes slowly have fewer digits.
+"""Slip, and rolling, that has ended, in units of the impact, or less than the rounding of the
+body's velocities: more leaves out of the impact what friction still takes.
 """
 
 BOTH_END = 1e-10
@@ -87,7 +82,7 @@ class StruckStatus(NamedTuple):
 
 def least_slip(body: StruckBody) -> float:
     """Return the slip that has ended."""
-    return NO_SLIP * max(1.0, ROUNDED * body.rounding)
+    return max(NO_SLIP, body.rounding)
 
 
 def slips_at(body: StruckBody, velocities: Slip) -> tuple[Slip, ...]:
