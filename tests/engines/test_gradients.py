@@ -1,6 +1,7 @@
 """Derivatives of launches in other programs: the exact ones, and what is stored of theirs."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from tippetop.engines import gradients
 from tippetop.engines.adapters import adapter
 from tippetop.engines.comparison import STEPS
+from tippetop.engines.measurements import Measurements
 from tippetop.engines.reference import case_of, judged_state
 from tippetop.run import simulate
 
@@ -28,9 +30,9 @@ def test_the_exact_derivative_is_that_of_exact_runs(parameter):
 
 
 def test_stored_derivatives_are_of_every_case_and_step():
-    stored = gradients.stored()
-    for program in stored["versions"]:
-        rows = [row for row in stored["rows"] if row.program == program]
+    stored = gradients.LAUNCH_GRADIENTS.stored()
+    for program in stored.versions:
+        rows = [row for row in stored.rows if row.program == program]
         asked = {
             (name, parameter, step)
             for name in gradients.CASES_OF[program]
@@ -43,7 +45,7 @@ def test_stored_derivatives_are_of_every_case_and_step():
 
 
 def test_the_page_says_what_is_stored():
-    rows = gradients.stored()["rows"]
+    rows = gradients.LAUNCH_GRADIENTS.stored().rows
     errors = {
         (row.case, row.parameter, row.setting, row.method, row.step): row.error for row in rows
     }
@@ -66,3 +68,37 @@ def test_steps_carry_a_change_as_runs_do_in_mujoco():
     differed = launch.differed("launch.spin")
     carried = launch.carried(launch.change("launch.spin"), 1e-8)
     assert carried == pytest.approx(differed, abs=1e-3 * np.abs(differed).max())
+
+
+class Reading(NamedTuple):
+    program: str
+    value: float
+
+
+def measurements(path, values):
+    return Measurements(
+        about="Readings.",
+        file=str(path),
+        row=Reading,
+        packages={"one": "numpy", "two": "pytest", "three": "a-package-that-nobody-has"},
+        measure=lambda program: [Reading(program, value) for value in values],
+        program_of=lambda row: row.program,
+        line=lambda row: f"{row.program} {row.value:g}",
+    )
+
+
+def test_measured_rows_replace_those_of_their_program_alone(tmp_path, capsys):
+    path = tmp_path / "rows.json"
+    measurements(path, [1.0, math.nan]).run(["--write"])
+    assert (
+        "three is not installed: pip install a-package-that-nobody-has" in capsys.readouterr().out
+    )
+    measurements(path, [3.0]).run(["--program", "two"])
+    measurements(path, [2.0]).run(["--program", "one", "--write"])
+    stored = measurements(path, []).stored()
+    assert stored.versions == {"one": np.__version__, "two": pytest.__version__}
+    assert [(row.program, row.value) for row in stored.rows[::2]] == [("two", 1.0), ("one", 2.0)]
+    assert math.isnan(stored.rows[1].value)
+    with pytest.raises(SystemExit):
+        measurements(path, []).run(["--program", "four"])
+    assert "invalid choice: 'four'" in capsys.readouterr().err

@@ -34,7 +34,7 @@ def test_it_sticks_when_dry_friction_has_used_up_the_slip():
 
 
 def test_what_is_stored_is_what_the_page_says():
-    runs = tutorial.stored()["runs"]
+    runs = tutorial.TOP_RUNS.stored().rows
     assert [(run.about, run.step, run.patch) for run in runs] == [
         (setting.about, setting.step, setting.patch) for setting in tutorial.SETTINGS
     ]
@@ -61,11 +61,11 @@ def test_what_is_stored_comes_again():
     mujoco = pytest.importorskip(
         "mujoco", reason="MuJoCo is not installed: pip install 'tippetop[engines]'"
     )
-    stored = tutorial.stored()
-    if mujoco.__version__ != stored["version"]:
-        pytest.skip(f"the stored runs are of MuJoCo {stored['version']}")
+    stored = tutorial.TOP_RUNS.stored()
+    if mujoco.__version__ != stored.versions["MuJoCo"]:
+        pytest.skip(f"the stored runs are of MuJoCo {stored.versions['MuJoCo']}")
     for place in (0, 4, 8):
         run = tutorial.in_mujoco(tutorial.SETTINGS[place])
-        stored_run = stored["runs"][place]
+        stored_run = stored.rows[place]
         assert run.turnover_time == pytest.approx(stored_run.turnover_time, rel=1e-6, nan_ok=True)
         assert run.energy_lost == pytest.approx(stored_run.energy_lost, abs=1e-6)

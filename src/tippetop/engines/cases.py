@@ -40,16 +40,17 @@ class Case(NamedTuple):
         return self.duration * np.arange(1, SAMPLES + 1) / SAMPLES
 
 
-_REPORT = tt.presets.REPORT
-
 _AT_REST = (0.0, 0.0, 0.0)
 
 
-def _on_friction(friction: tt.Friction, spin: float, **launch: object) -> tt.Problem:
-    """Return the report's top, leaning by 0.1 rad and spinning on friction of a kind."""
-    return tt.Problem(
-        body=_REPORT, friction=friction, launch=tt.Launch(tilt=0.1, spin=spin, **launch)
-    )
+def _report_top(friction: tt.Friction, launch: tt.Launch, **others: object) -> tt.Problem:
+    """Return the report's top on friction of a kind."""
+    return tt.Problem(body=tt.presets.REPORT, friction=friction, launch=launch, **others)
+
+
+def _leaning(spin: float, **others: object) -> tt.Launch:
+    """Return a launch that leans by 0.1 rad."""
+    return tt.Launch(tilt=0.1, spin=spin, **others)
 
 
 def _of_leine_and_glocker(body: tt.Body, pressure: str) -> tt.Problem:
@@ -90,21 +91,21 @@ CASES = (
         "viscous",
         "A tippe top on a viscous film",
         "smooth friction, the turning over, and Jellett's integral",
-        _on_friction(tt.ViscousFriction(mu=0.3), 155.0),
+        _report_top(tt.ViscousFriction(mu=0.3), _leaning(155.0)),
         8.0,
     ),
     Case(
         "coulomb-roll",
         "A top on dry friction slips, sticks and rolls",
         "the end of slip, and rolling without loss",
-        _on_friction(tt.CoulombFriction(mu=0.3), 155.0, velocity=_AT_REST),
+        _report_top(tt.CoulombFriction(mu=0.3), _leaning(155.0, velocity=_AT_REST)),
         2.0,
     ),
     Case(
         "stick-slip",
         "A top on slippery dry friction sticks and slips 190 times",
         "many beginnings and ends of slip",
-        _on_friction(tt.CoulombFriction(mu=0.02985), 155.0),
+        _report_top(tt.CoulombFriction(mu=0.02985), _leaning(155.0)),
         6.0,
         # Some 5e-13 s in each of 190 cycles; other steps of the program move its events by 6e-13 s.
         added_up=2e-10,
@@ -114,11 +115,11 @@ CASES = (
         "drilling",
         "A top on a contact patch turns over (ellipsoidal limit surface)",
         "slipping and drilling at once",
-        _on_friction(
+        _report_top(
             tt.ContensouFriction(
                 mu=0.3, patch_radius=1e-3 / ELLIPSOIDAL_RADIUS, pressure="ellipsoidal"
             ),
-            100.0,
+            _leaning(100.0),
         ),
         4.0,
     ),
@@ -133,17 +134,16 @@ CASES = (
         "flights",
         "A fast top leaves the table and comes down",
         "lift-off, flights and impacts without rebound",
-        _on_friction(tt.ViscousFriction(mu=0.3), 175.0),
+        _report_top(tt.ViscousFriction(mu=0.3), _leaning(175.0)),
         6.0,
     ),
     Case(
         "restitution",
         "A spinning ball is dropped and rebounds",
         "impacts with friction and restitution",
-        tt.Problem(
-            body=_REPORT,
-            friction=tt.CoulombFriction(mu=0.1),
-            launch=tt.Launch(tilt=0.6, spin=120.0, gap=0.02, velocity=_AT_REST),
+        _report_top(
+            tt.CoulombFriction(mu=0.1),
+            tt.Launch(tilt=0.6, spin=120.0, gap=0.02, velocity=_AT_REST),
             contact=tt.Contact(restitution=0.8),
         ),
         0.3,
@@ -201,10 +201,9 @@ CASES = (
         "rest",
         "A ball with its centre of mass off the middle rocks to rest",
         "rolling resistance that holds",
-        tt.Problem(
-            body=_REPORT,
-            friction=tt.CoulombFriction(mu=0.3),
-            launch=tt.Launch(tilt=1.0, spin=0.0),
+        _report_top(
+            tt.CoulombFriction(mu=0.3),
+            tt.Launch(tilt=1.0, spin=0.0),
             rolling_resistance=5e-4,
         ),
         1.6,

@@ -11,13 +11,9 @@ to the problem, or to neither.
 """
 
 import functools
-import importlib.metadata
-import json
 import math
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from importlib.resources import files
-from pathlib import Path
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,6 +25,7 @@ from tippetop.engines.adapters.base import Setting
 from tippetop.engines.bodies import launch_state
 from tippetop.engines.cases import Case
 from tippetop.engines.comparison import STEPS
+from tippetop.engines.measurements import Measurements
 from tippetop.engines.reference import case_of, judged_state
 from tippetop.support.errors import Unavailable
 
@@ -255,20 +252,8 @@ PROGRAMS: Mapping[str, Callable[[Case, float], Iterator[tuple[str, str, Any]]]] 
 }
 """How programs give derivatives of a case at a step."""
 
-MODULES = {"MuJoCo": ("mujoco", "mujoco"), "MJX": ("mujoco-mjx", "mujoco.mjx")}
-"""Package and module of each program."""
-
 CASES_OF = {"MuJoCo": DIFFERENTIATED, "MJX": ("coulomb-roll", "slope")}
 """Cases that are measured: MJX is compiled for a minute or more for each setting."""
-
-
-def version_of(program: str) -> str | None:
-    """Return the version of a program; None where it is not installed."""
-    package, _ = MODULES[program]
-    try:
-        return importlib.metadata.version(package)
-    except importlib.metadata.PackageNotFoundError:
-        return None
 
 
 def measured(program: str) -> Iterator[LaunchGradient]:
@@ -286,59 +271,23 @@ def measured(program: str) -> Iterator[LaunchGradient]:
                     yield LaunchGradient(program, method, setting, name, parameter, step, error)
 
 
-def stored() -> dict[str, Any]:
-    """Return what was measured: `versions` by program, and `rows`."""
-    record = json.loads((files(__package__) / GRADIENTS).read_text(encoding="utf-8"))
-    rows = list[LaunchGradient]()
-    for row in record["rows"]:
-        values: dict[str, Any] = {
-            name: math.nan if value is None else value for name, value in row.items()
-        }
-        rows.append(LaunchGradient(**values))
-    return {**record, "rows": rows}
-
-
-def _store(program: str, rows: Sequence[LaunchGradient]) -> None:
-    """Put the rows of a program into what is stored, in place of earlier ones."""
-    path = Path(str(files(__package__) / GRADIENTS))
-    earlier = stored() if path.is_file() else {"versions": {}, "rows": []}
-    versions = {**earlier["versions"], program: version_of(program)}
-    others = [row for row in earlier["rows"] if row.program != program]
-    lines = [
-        json.dumps(
-            {name: None if value != value else value for name, value in row._asdict().items()}
-        )
-        for row in (*others, *rows)
-    ]
-    body = ",\n".join(lines)
-    path.write_text(
-        f'{{"versions": {json.dumps(versions)}, "rows": [\n{body}\n]}}\n', encoding="utf-8"
+def _line(row: LaunchGradient) -> str:
+    return (
+        f"{row.case:<14}{row.parameter:<13}{1e3 * row.step:>6g} ms  {row.setting:<11}"
+        f"{row.method:<30}{row.error:.2g}"
     )
 
 
-def main(words: list[str]) -> None:
-    """Print the errors of derivatives in the programs that are installed; --write stores them.
-
-    Programs may be named.
-    """
-    chosen = [name for name in PROGRAMS if name in words] or list(PROGRAMS)
-    for program in chosen:
-        version = version_of(program)
-        if version is None:
-            print(f"{program} is not installed: pip install {MODULES[program][0]}")
-            continue
-        print(f"{program} {version}, tippetop {tt.__version__}")
-        rows = []
-        for row in measured(program):
-            rows.append(row)
-            print(
-                f"{row.case:<14}{row.parameter:<13}{1e3 * row.step:>6g} ms  {row.setting:<11}"
-                f"{row.method:<30}{row.error:.2g}",
-                flush=True,
-            )
-        if "--write" in words:
-            _store(program, rows)
+LAUNCH_GRADIENTS = Measurements(
+    about="Errors of derivatives by the launch in the programs that are installed.",
+    file=GRADIENTS,
+    row=LaunchGradient,
+    packages={"MuJoCo": "mujoco", "MJX": "mujoco-mjx"},
+    measure=measured,
+    program_of=lambda row: row.program,
+    line=_line,
+)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    LAUNCH_GRADIENTS.run(sys.argv[1:])

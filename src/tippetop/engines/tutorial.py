@@ -4,12 +4,10 @@ Run as ``python -m tippetop.engines.tutorial``, it measures every number anew an
 ``--write`` it stores what MuJoCo gives, which the page about it shows.
 """
 
-import json
 import math
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from importlib.resources import files
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +15,7 @@ from numpy.typing import NDArray
 
 import tippetop as tt
 from tippetop.engines.adapters.base import axis_of
+from tippetop.engines.measurements import Measurements
 from tippetop.engines.mjcf.reading import problem_of_mjcf
 from tippetop.engines.reference import numbers_of
 from tippetop.mechanics.laws.contensou import ELLIPSOIDAL_RADIUS
@@ -26,6 +25,8 @@ Array = NDArray[np.float64]
 
 FILE, STORED = "tutorial_top.xml", "tutorial_top.json"
 """Files of this package: the top, and what MuJoCo makes of it."""
+
+MUJOCO = "MuJoCo"
 
 DURATION = 8.0
 """Length of the runs, s: twice the time in which the top turns over in MuJoCo's tutorial."""
@@ -243,27 +244,7 @@ def first_stick(friction: tt.Friction | None = None) -> float:
     return float(sticks[0]) if len(sticks) else math.nan
 
 
-# What is stored
-
-
-def stored() -> dict[str, Any]:
-    """Return what MuJoCo made of the top: its version, and `runs`."""
-    record = json.loads((files(__package__) / STORED).read_text(encoding="utf-8"))
-    runs = list[TopRun]()
-    for row in record["runs"]:
-        values: dict[str, Any] = {
-            name: math.nan if value is None else value for name, value in row.items()
-        }
-        runs.append(TopRun(**values))
-    return {**record, "runs": runs}
-
-
-def measured() -> dict[str, Any]:
-    """Return what MuJoCo makes of the top now: its version, and `runs`."""
-    runs = [in_mujoco(setting) for setting in SETTINGS]
-    import mujoco  # noqa: PLC0415 - optional
-
-    return {"version": mujoco.__version__, "runs": runs}
+# What is measured
 
 
 def _line(run: TopRun) -> str:
@@ -277,40 +258,42 @@ def _line(run: TopRun) -> str:
     )
 
 
+def _measured(program: str) -> Iterator[TopRun]:
+    """Yield what MuJoCo makes of the top now."""
+    return map(in_mujoco, SETTINGS)
+
+
+TOP_RUNS = Measurements(
+    about="What becomes of the tutorial's top in MuJoCo, and exactly.",
+    file=STORED,
+    row=TopRun,
+    packages={MUJOCO: "mujoco"},
+    measure=_measured,
+    program_of=lambda run: MUJOCO,
+    line=_line,
+    heading=(
+        f"{'':<55}{'step':>7}{'patch':>8}{'over at':>10}{'tilt':>9}{'energy':>10}{'Jellett':>10}"
+    ),
+)
+
+
+def exact_runs(stored: Iterable[TopRun]) -> Iterator[TopRun]:
+    """Yield exact runs: on dry friction, on the films of stored runs that creep, on patches."""
+    yield exactly()
+    for run in stored:
+        if run.about in CREEPING:
+            yield exactly(tt.ViscousFriction(mu=run.film))
+    for pressure in ("hertz", "ellipsoidal"):
+        for patch in PATCHES:
+            yield exactly(tt.ContensouFriction(mu=1.0, patch_radius=patch, pressure=pressure))
+
+
 def main(words: list[str]) -> None:
     """Print what becomes of the top in MuJoCo and exactly; with --write, store the first."""
-    record = measured()
-    print(f"MuJoCo {record['version']}, tippetop {tt.__version__}; runs of {DURATION:g} s")
-    print(f"{'':<55}{'step':>7}{'patch':>8}{'over at':>10}{'tilt':>9}{'energy':>10}{'Jellett':>10}")
-    for run in record["runs"]:
+    TOP_RUNS.run(words)
+    for run in exact_runs(TOP_RUNS.stored().rows):
         print(_line(run))
-    laws: list[tt.Friction | None] = [None]
-    laws += [tt.ViscousFriction(mu=run.film) for run in record["runs"] if run.about in CREEPING]
-    laws += [
-        tt.ContensouFriction(mu=1.0, patch_radius=patch, pressure=pressure)
-        for pressure in ("hertz", "ellipsoidal")
-        for patch in PATCHES
-    ]
-    for law in laws:
-        print(_line(exactly(law)))
     print(f"on dry friction it sticks after {1e3 * first_stick():.4g} ms")
-    if "--write" in words:
-        path = Path(str(files(__package__) / STORED))
-        path.write_text(json.dumps(_plain(record), indent=1) + "\n", encoding="utf-8")
-
-
-def _plain(record: dict[str, Any]) -> dict[str, Any]:
-    """Return a record as JSON has it, without nan."""
-    return {
-        **record,
-        "runs": [
-            {
-                name: None if isinstance(value, float) and math.isnan(value) else value
-                for name, value in run._asdict().items()
-            }
-            for run in record["runs"]
-        ],
-    }
 
 
 if __name__ == "__main__":
