@@ -72,7 +72,7 @@ def simulate(
 ) -> tuple[xr.Dataset, RunSolution]: ...
 
 
-@np.errstate(all="ignore")  # numbers that overflow end the run with an status of their own
+@np.errstate(all="ignore")  # numbers that overflow end the run with a status of their own
 def simulate(
     problem: Problem,
     duration: float,

@@ -855,7 +855,8 @@ class Automaton:
     ) -> Transition:
         """Collide without approach where no contact force is consistent with the friction.
 
-        Unless an impact has just left it so: then rounding decides, not friction.
+        The run fails where bodies are held to the table, and where two impacts at this instant have
+        left it so: then rounding decides, not friction.
         """
         struck = sum(event.kind is EventKind.IMPACT for event in events)
         if self.liftoff == "fly" and struck <= 1:

@@ -27,6 +27,8 @@ class Collision(NamedTuple):
 def collision(state: State, restitution: float, top: Top) -> Collision:
     """Return what an impact does; one that would hardly rebound has no restitution.
 
+    Another surface that touches strikes too, or is pressed onto the table, or opens.
+
     It is followed to rounding whatever method the run has: what it leaves of slip that has ended
     must be rounding.
 

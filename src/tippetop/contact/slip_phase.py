@@ -194,7 +194,9 @@ def change_over(pieces: Array, size: int) -> list[float]:
 
 
 def parts_left(terms: Sequence[float]) -> float:
-    """Return how far beyond 1 a polynomial is zero, by its value and two derivatives there."""
+    """Return how far beyond 1 a polynomial is zero, by its value and two derivatives there: where
+    it is nowhere, how far its least value is, and infinity where it grows.
+    """
     value = sum(terms)
     slope = sum([k * term for k, term in enumerate(terms)])
     bend = sum([k * (k - 1) * term for k, term in enumerate(terms)])

@@ -66,8 +66,8 @@ def lies_on_flat_end(top: Top, axis: Vector) -> Scalar:
 
 
 def passes_flat(top: Top, rows: Sequence[Row]) -> bool:
-    """Return whether a body may come to lie flat between rows of numbers, the first of the
-    numbers, floats.
+    """Return whether a body may come to lie flat between samples of its state, floats, which each
+    begin with the horizontal components of the axis; not if it has no edge to lie on.
 
     In one plane its tip passes the pole within so little that no look tells: the straight line
     between two does, by its place nearest the pole, from which the tip strays by less than a

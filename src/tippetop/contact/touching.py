@@ -67,8 +67,9 @@ def farthest_touching(top: Top, state: State) -> Top | None:
 def stays_closed(top: Top, beside: Top, state: State) -> bool:
     """Return whether another touching surface stays closed.
 
-    It does if its gap rate is below the limit of rebounds, or too small to lift it out of the
-    table, into which it reaches by at most the tolerance of touching.
+    It does if its gap rate is below that of rocking that has come to its end, `SLOWEST_ROCKING`, or
+    too small to lift it out of the table, into which it reaches by at most the tolerance of
+    touching.
     """
     back, depth = 1.0, max(0.0, float(gap(state, top) - gap(state, beside)))
     if _both_slip(top, beside, state):

@@ -13,7 +13,7 @@ from tippetop.fit.standing import (
     DRILLING,
     FALLEN,
     LONGEST_RISE,
-    is_upside_down,
+    above_upside_down,
     least_standing_spin,
     stands,
 )
@@ -570,7 +570,7 @@ class Trial:
             return math.inf
         launch = problem.replace({"launch.spin": self.spin})
         if self.goal == "fastest":
-            run = simulate(launch, LONGEST_RISE, until=is_upside_down, samples=2)
+            run = simulate(launch, LONGEST_RISE, until=above_upside_down, samples=2)
             return float(run["turnover_time"])
         return -standing_duration(launch)
 

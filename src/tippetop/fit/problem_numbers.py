@@ -103,7 +103,9 @@ def require_fields(problem: Problem, fields: Sequence[str], argument: str) -> No
 
 
 def scale_of(problem: Problem, field: str, number: float | None = None) -> float:
-    """Return the size of a field, SI, above which a change of it is large."""
+    """Return the size of a field by which its changes are measured, SI: its own, or, where that is
+    small, `SMALLEST_SCALE` of its natural unit.
+    """
     units, natural = natural_units(top_of(problem)), 1.0
     si = problem.quantity(field).units
     if si not in ("", "1"):

@@ -52,14 +52,16 @@ def drilling_launch(body: Body, spin: float = 1.0) -> Problem:
     return Problem(body=body, friction=DRILLING, launch=Launch(tilt=0.1, spin=spin))
 
 
-def is_upside_down(state: MotionState) -> float:
-    """Return a function that becomes negative where the axis comes near upside down."""
+def above_upside_down(state: MotionState) -> float:
+    """Return a number that falls below zero where the axis comes within `NEAR_POLE` of upside down:
+    an event function.
+    """
     return float(state.axis[2]) + math.cos(NEAR_POLE)
 
 
 def stands(problem: Problem) -> bool:
     """Return whether a run turns over and comes within `NEAR_POLE` of upside down."""
-    run = simulate(problem, LONGEST_RISE, until=is_upside_down, samples=2)
+    run = simulate(problem, LONGEST_RISE, until=above_upside_down, samples=2)
     return bool(run.attrs["status"] == "stopped")
 
 

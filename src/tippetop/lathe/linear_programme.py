@@ -53,7 +53,7 @@ def lowest_point(
 
     Returns
     -------
-    The point, or None if no point keeps all bounds.
+    The point, or None if no point keeps all bounds, or none is found in `MOST_EXCHANGES` exchanges.
     """
     squares = np.zeros(len(bounds))
     for column in columns:

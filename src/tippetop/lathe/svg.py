@@ -1,4 +1,6 @@
-"""Reading of drawings in SVG with svgelements: every shape as strokes on the sheet."""
+"""Reading of drawings in SVG with svgelements: every shape as strokes on the sheet, from which
+`tippetop.lathe.sheet` takes the axis and the profile, and leaves out pages and frames.
+"""
 
 import math
 import re

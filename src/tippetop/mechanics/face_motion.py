@@ -66,8 +66,8 @@ def turning_of_face(momentum: Vector, top: Top) -> Horizontal:
 
 
 def rim_speed(momentum: Vector, top: Top) -> Scalar:
-    """Return a1 |omega_h|, m/s: how much slower the lowest point of the rim falls than the middle
-    rises.
+    """Return a1 |omega_h|, m/s: how much faster than the middle that point of the rim sinks which
+    sinks fastest.
     """
     x, y = turning_of_face(momentum, top)
     return face_radii(top.surface)[1] * (x * x + y * y) ** 0.5

@@ -58,6 +58,8 @@ def friction_law(**units: str) -> Callable[[Force], type[Friction]]:
     components, the angular velocity, rad/s, as three, and the coefficients of the law by their
     names. It returns the two components of the friction force per unit normal force. Its name is
     the `kind` of the friction. A law with a torque is a class: see `tippetop.extend.FrictionLaw`.
+    Apart from arithmetic and powers by numbers it may use `where`, `abs`, `min`, `max`, `sqrt`,
+    `exp`, `log` and `tanh` of `tippetop.extend`: it is recorded as expressions, which are compiled.
 
     Parameters
     ----------

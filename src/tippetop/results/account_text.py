@@ -14,7 +14,7 @@ from tippetop.problem.problem import Problem
 from tippetop.results.account import Clause, Facts, account_of
 from tippetop.results.catalogue import METRICS
 from tippetop.results.dataset import require_run
-from tippetop.results.time_digits import TENS, time_digits
+from tippetop.results.time_digits import time_digits, usual_digits
 
 MILLISECONDS = 0.01
 """Times below it, s, are written in milliseconds."""
@@ -134,7 +134,7 @@ def written(gap: str, value: float, units: Mapping[str, str]) -> str:
         case "time" | "duration":
             if 0.0 < value < MILLISECONDS:
                 return f"{_digits(1e3 * value, 3)} {units['short']}"
-            return f"{_digits(value, 3 if value < TENS else 4)} {units['time']}"
+            return f"{_digits(value, usual_digits(value))} {units['time']}"
         case "about":
             return f"{_digits(value, 2)} {units['time']}"
         case "tilt" | "highest":

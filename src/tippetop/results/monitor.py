@@ -116,7 +116,9 @@ class Monitor:
         return self.inaccuracy > max(LARGEST_ERROR, ERROR_PER_TOLERANCE * tolerance)
 
     def breach(self, tolerance: float) -> str:
-        """Return a sentence that names what one launch did not keep; empty if it kept all."""
+        """Return a sentence that names the first thing that one launch did not keep, in the order
+        of causes; empty if it kept all.
+        """
         allowed = max(LARGEST_ERROR, ERROR_PER_TOLERANCE * tolerance)
         for error, (subject, predicate) in zip(self.errors, BREACHES, strict=True):
             if not error <= allowed:

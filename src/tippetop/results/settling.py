@@ -224,8 +224,11 @@ def deviation(state: State, top: Top) -> Scalar:
 
 
 def is_barred(state: State, top: Top, height: Scalar, at: Scalar) -> Scalar:
-    """Return whether the energy is too small for tilts `at`, rad, with the centre of mass at a
-    height.
+    """Return whether the energy is too small for tilts `at`, rad, where it is at least that of the
+    centre of mass at a height.
+
+    A sphere that spins for ever needs its least energy at that tilt instead, with its Jellett's
+    integral. On a slope, where all energies are reached, no tilt is barred.
     """
     least = -math.inf if slides_down(top) else height
     if acting(top.surface).spherical and spins_for_ever(top) and not isinstance(top.surface, Hull):

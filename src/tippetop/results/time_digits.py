@@ -84,4 +84,9 @@ def digits_left(time: float, uncertainty: float, usual: int) -> int:
 
 def time_digits(time: float, uncertainty: float) -> int:
     """Return how many digits of a time, s, are written in sentences; 0 for none."""
-    return digits_left(time, uncertainty, 3 if time < TENS else 4)
+    return digits_left(time, uncertainty, usual_digits(time))
+
+
+def usual_digits(time: float) -> int:
+    """Return how many digits of a time, s, are written where nothing takes any from it."""
+    return 3 if time < TENS else 4

@@ -25,9 +25,11 @@ Made = TypeVar("Made")
 
 
 def let_end(at_first: bool = False) -> None:
-    """Let signals end the process at once with one line: while nothing has to be undone.
+    """Let signals end the process at once with a line, without cleaning up: while nothing is to be
+    undone.
 
-    With `at_first` they replace Python's handlers, without it those of `let_raise`.
+    The handlers that do so replace Python's own with `at_first`, and without it those of
+    `let_raise`. Signals that are ignored stay so.
     """
     replaced = (signal.SIG_DFL, signal.default_int_handler) if at_first else (_raise,)
     for number in ENDINGS:

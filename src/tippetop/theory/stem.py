@@ -1,4 +1,8 @@
-"""Condition for standing on a stem: the least Jellett's integral about its tip."""
+"""Condition for standing on a stem: the least Jellett's integral about its tip.
+
+The least spin of a launch that has it is `tippetop.theory.overview.outlook`'s; those of a body on
+one surface are in `thresholds`, and sizes with which it is reached in `advice`.
+"""
 
 from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.surfaces.hull import each_surface

@@ -87,7 +87,10 @@ class Answer(NamedTuple):
 
 
 def answers(points: Sequence[ContactPoint], slips: Slips, rolling: Slip | None) -> list[Answer]:
-    """Return every consistent answer of one closed contact or of two, the largest sets first.
+    """Return every consistent answer of one closed contact or of two.
+
+    Those with both contacts closed come first, then those with one, and last the one with none;
+    among those with both, such as begin fewest velocities. Who asks takes the first.
 
     While rolling is held on two contacts, the couple that holds it acts along their line alone: one
     contact carries the body with rolling held only where both do not.
