@@ -98,7 +98,7 @@ def test_the_end_does_not_depend_on_where_the_law_takes_over(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     ends, energies = list[float](), list[float]()
-    for left_out in (1e-7, 1e-9, 1e-10):
+    for left_out in (1e-7, 1e-8, 1e-10):
         monkeypatch.setattr(lying_down, "LEFT_OUT", left_out)
         for cached in (
             contact_mode.motion_of,

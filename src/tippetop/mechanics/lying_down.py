@@ -46,17 +46,18 @@ from tippetop.mechanics.surfaces.surface import POLE, support_at
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Scalar, Vector, power
 
-LEFT_OUT = 1e-9
+LEFT_OUT = 1e-8
 """Time, in natural units, that the time left may be wrong by where a wobble is followed no further:
-below 1e-9 s on any body smaller than 9 m. Far above it the end of a run would show it; far below,
-slip that begins in so short a time is rounding.
+below 1e-9 s on any body smaller than 9 cm. Far above it the end of a run would show it; a tenth of
+it, and a body that rocks from side to side turns round within so short times that rounding hides
+the slip that begins then.
 """
 
-FRICTION_ARM = 0.1
+FRICTION_ARM = 0.01
 """Arm of the couple that stands for friction in the power without rolling resistance, over the
 edge's radius. Friction's own arm may have either sign and changes with every nutation. With this
-one a wobble that lasts a tenth of `LEFT_OUT` counts as none. A smaller one follows rounding, and a
-larger one ends a wobble that friction still lifts.
+one a wobble that lasts a hundredth of `LEFT_OUT` counts as none. A smaller one follows rounding,
+and a larger one ends a wobble that friction still lifts.
 """
 
 SLAP = 1e-6
