@@ -213,6 +213,21 @@ def test_a_ball_without_spin_rebounds_in_mujoco_with_the_restitution_asked_for()
     assert max(speeds) / -min(speeds) == pytest.approx(0.8, abs=0.02)
 
 
+def test_a_recorded_step_of_newton_is_its_step():
+    pytest.importorskip("newton", reason="Newton is not installed")
+    made, case = adapter("newton"), case_of("peg")
+    for setting in settings_of(made, case)[1:3]:
+        run = made.start(case, 1e-3, setting)
+        world = run.world
+        before, after, contacts = world.state(), world.state(), world.pipeline.contacts()
+        for _ in range(3):
+            run.advance(1)
+            world.follow(before, after, contacts)
+            before, after = after, before
+        assert run.state.body_q.numpy().tolist() == before.body_q.numpy().tolist()
+        assert run.state.body_qd.numpy().tolist() == before.body_qd.numpy().tolist()
+
+
 def test_a_damaged_file_of_results_is_said(tmp_path):
     (tmp_path / "moreau.json").write_text("{")
     with pytest.raises(tt.InvalidInput, match="file of results"):

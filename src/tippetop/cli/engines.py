@@ -25,8 +25,8 @@ def engines(
         list[str] | None,
         typer.Option(
             help=(
-                "Only this program: moreau, mujoco, pybullet, drake, exudyn or rapier; or your"
-                " adapter in a file, my_engine.py."
+                "Only this program: moreau, mujoco, pybullet, drake, exudyn, rapier or newton; or"
+                " your adapter in a file, my_engine.py."
             )
         ),
     ] = None,

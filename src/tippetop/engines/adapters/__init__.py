@@ -25,6 +25,7 @@ ADAPTERS: Mapping[str, str] = {
     "drake": "Drake",
     "exudyn": "Exudyn",
     "rapier": "Rapier",
+    "newton": "Newton",
 }
 """The classes of the adapters by their names and files."""
 
