@@ -381,9 +381,13 @@ def test_a_distribution_that_is_none_is_refused(tmp_path, draw):
 
 
 def test_trajectories_are_kept_by_an_option(tmp_path):
-    kept = ("--keep", "tilt", "--keep", "axis", "--samples", 5)
-    run(*AXES, *SHORT, *kept, "--out", tmp_path / "a.zarr", "--no-maps")
+    kept = ("--keep", "tilt", "--keep", "axis", "--keep", "x", "--keep", "events")
+    counts = ("--samples", 5, "--most-events", 3)
+    run(*AXES, *SHORT, *kept, *counts, "--out", tmp_path / "a.zarr", "--no-maps")
     found = tt.read_sweep(tmp_path / "a.zarr")
+    assert found["event_time"].shape == (3, 2, 3)
+    assert (found["event_count"] == 3 * found["flights"]).all()
+    assert (found["x"].values[:, :, 0] == 0.0).all()
     assert found["axis"].shape == (3, 2, 5, 3)
     assert found["tilt"].values[:, :, 0] == pytest.approx(np.ones((3, 2)))
     run("--resume", "--out", tmp_path / "a.zarr", "--no-maps")

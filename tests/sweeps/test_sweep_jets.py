@@ -13,8 +13,8 @@ from tippetop.problem.presets import report_problem
 from tippetop.sweeps import Axis, Product, Sweep
 from tippetop.sweeps.axis_extremes import DOWN, FORCE, UP, TipMotion
 from tippetop.sweeps.cells import cells_of
-from tippetop.sweeps.ensemble import swept_motion
 from tippetop.sweeps.lane_arrays import Slots
+from tippetop.sweeps.lane_sums import NO_SUMS, swept_motion
 from tippetop.sweeps.polynomial_arcs import Arcs, arcs
 from tippetop.sweeps.taylor_stepper import stepper
 
@@ -29,7 +29,7 @@ def anywhere():
     sweep = Sweep(problem, Product((Axis.of("friction.mu", np.linspace(0.1, 0.5, COUNT)),)), 1.0)
     cells = cells_of(sweep.problem, sweep.grid.values(np.arange(COUNT)))
     launches = cells.launches(np.arange(COUNT), 1.0)
-    method = stepper(swept_motion(launches.kind), 1e-9)
+    method = stepper(swept_motion(launches.kind, NO_SUMS), 1e-9)
     slots, random = Slots(launches, method, None), np.random.default_rng(2)
     axis = random.normal(size=(3, COUNT))
     axis /= np.linalg.norm(axis, axis=0)

@@ -9,13 +9,12 @@ from sweep_cases import lively, problem_of, stored, thrown, truth
 
 import tippetop as tt
 from tippetop.problem.presets import report_problem
-from tippetop.results.samples import OF_INSTANTS
+from tippetop.results.samples import OF_INSTANTS, OF_SUMS
 from tippetop.run import simulate
 from tippetop.support.errors import InvalidInput
 from tippetop.sweeps import Product, Store, Sweep, compute, fill, read_sweep
 from tippetop.sweeps.axes import Axis
 from tippetop.sweeps.contents import CONTENTS
-from tippetop.sweeps.trajectory_samples import SUMMED_UP
 
 EVERY = tuple(OF_INSTANTS)
 
@@ -96,7 +95,7 @@ def test_samples_of_what_is_summed_up_are_those_of_single_runs(azimuth):
     problem = report_problem(tilt=0.3, spin=175.0).replace({"launch.azimuth": azimuth})
     tilts = Product((Axis.of("launch.tilt", [0.0, 0.3, 2.0]),))
     sweep = Sweep(problem, tilts, 3.0, 1e-12)
-    found = check_against_runs(with_samples(sweep, keep=(*SUMMED_UP, "tilt")), closeness=1e-6)
+    found = check_against_runs(with_samples(sweep, keep=(*OF_SUMS, "tilt")), closeness=1e-6)
     assert found["orientation"].dims == ("launch.tilt", "time", "quaternion")
     assert float(abs(found["x"]).max()) > 1e-3
     assert (found["work"].isel(time=-1) < 0.0).any()
@@ -152,6 +151,8 @@ def test_events_alone_have_no_samples():
     )
     assert "time" not in found.dims
     assert found["event_time"].shape == (1, 20)
+    assert found["outcome"][0] == "moving_upright"
+    assert int(found["event_count"][0]) == 0
 
 
 def test_samples_at_given_times_dense_or_sparse_are_those_of_single_runs():

@@ -35,20 +35,22 @@ class Samples(NamedTuple):
 
 def observe(samples: Samples, top: Top, units: Units) -> dict[str, Array]:
     """Return every variable of `catalogue.SAMPLED` in SI, by name, of a top in natural units."""
-    instants, sums = samples.instants, samples.sums
+    instants = samples.instants
     variables = {name: function(instants, top, units) for name, function in OF_INSTANTS.items()}
-    drilled, rolled, braked = sums.losses
-    turned = orientation(instants.state.axis, sums.turn, samples.pole, np)
-    variables["energy"] = (instants.energy - sums.descent_work(top)) * units.energy
-    variables["work"] = sums.work * units.energy
-    variables["sliding_loss"] = (-sums.work - sums.struck - drilled - rolled) * units.energy
-    variables["drilling_loss"] = drilled * units.energy
-    variables["rolling_loss"] = rolled * units.energy
-    variables["air_loss"] = braked * units.energy
-    variables["x"] = sums.x * units.length
-    variables["y"] = sums.y * units.length
-    variables["orientation"] = np.stack(turned, -1)
+    for name, in_si in OF_SUMS.items():
+        variables[name] = in_si(instants, samples.sums, samples.pole, top, units)
     return variables
+
+
+def sliding_loss(sums: RunSums) -> Scalar:
+    """Return the energy lost to sliding, in natural units."""
+    drilled, rolled, _ = sums.losses
+    return -sums.work - sums.struck - drilled - rolled
+
+
+def orientation_of(instants: Instants, sums: RunSums, pole: Scalar) -> Array:
+    """Return the orientations as unit quaternions, shape (k, 4), each of either sign."""
+    return np.stack(orientation(instants.state.axis, sums.turn, pole, np), -1)
 
 
 def tilt_in_rad(instants: Instants) -> Array:
@@ -118,6 +120,24 @@ OF_INSTANTS: Mapping[str, Callable[[Instants, Top, Units], Array]] = {
 """
 
 
+OF_SUMS: Mapping[str, Callable[[Instants, RunSums, Scalar, Top, Units], Array]] = {
+    "energy": lambda instants, sums, _pole, top, units: (
+        (instants.energy - sums.descent_work(top)) * units.energy
+    ),
+    "work": lambda _instants, sums, _pole, _top, units: sums.work * units.energy,
+    "sliding_loss": lambda _instants, sums, _pole, _top, units: sliding_loss(sums) * units.energy,
+    "drilling_loss": lambda _instants, sums, _pole, _top, units: sums.losses[0] * units.energy,
+    "rolling_loss": lambda _instants, sums, _pole, _top, units: sums.losses[1] * units.energy,
+    "air_loss": lambda _instants, sums, _pole, _top, units: sums.losses[2] * units.energy,
+    "x": lambda _instants, sums, _pole, _top, units: sums.x * units.length,
+    "y": lambda _instants, sums, _pole, _top, units: sums.y * units.length,
+    "orientation": lambda instants, sums, pole, _top, _units: orientation_of(instants, sums, pole),
+}
+"""The others, in SI: functions of `Instants`, of `RunSums` and the pole of the chart of the angle,
+and of the top, in natural units, and of these units.
+"""
+
+
 def event_in_si(event: Event, units: Units) -> Event:
     """Return an event with its numbers in SI."""
     return replace(
@@ -130,7 +150,8 @@ def event_in_si(event: Event, units: Units) -> Event:
 
 # translate: skip
 def continuous(quaternions: Array) -> Array:
-    """Return quaternions of shape (k, 4) with signs chosen so that they are continuous."""
-    jumps = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) < 0
-    signs = np.concatenate(([1.0], np.cumprod(np.where(jumps, -1.0, 1.0))))
-    return np.asarray(quaternions * signs[:, None])
+    """Return quaternions of shape (..., k, 4) with signs chosen so that the k are continuous."""
+    jumps = np.einsum("...i,...i->...", quaternions[..., 1:, :], quaternions[..., :-1, :]) < 0
+    signs = np.ones(quaternions.shape[:-1])
+    signs[..., 1:] = np.cumprod(np.where(jumps, -1.0, 1.0), axis=-1)
+    return np.asarray(quaternions * signs[..., None])

@@ -1,24 +1,16 @@
 """The engine: cells in, observables out."""
 
-from collections.abc import Sequence
-from dataclasses import replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.contact.contact_mode import sliding_motion
 from tippetop.contact.mode import Status
-from tippetop.integrators.base import Array, Motion
+from tippetop.integrators.base import Array
 from tippetop.mechanics.invariants import energy
-from tippetop.mechanics.motion import on_table, sliding_contact
 from tippetop.mechanics.natural_units import Units
-from tippetop.mechanics.quadratures import resistance_powers
-from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.hull import lowest_gap
-from tippetop.mechanics.top import Kind
-from tippetop.mechanics.vectors import Scalar, length
+from tippetop.mechanics.vectors import length
 from tippetop.results.catalogue import Fault, Outcome
 from tippetop.results.metrics import STATUSES, Ends, metrics, outcomes_of, settled_band
 from tippetop.results.monitor import STATUSES_OF_MOTION, Monitor, monitored_quantities
@@ -26,13 +18,15 @@ from tippetop.results.settling import settled_tilts
 from tippetop.support.errors import Unavailable
 from tippetop.sweeps.cells import cells_of, spread
 from tippetop.sweeps.contents import OF_EVENTS, contents_of
-from tippetop.sweeps.definition import EVENTS, Sweep
+from tippetop.sweeps.definition import Sweep
 from tippetop.sweeps.grid import Flat
 from tippetop.sweeps.lane_executor import Lanes, arrivals
+from tippetop.sweeps.lane_sums import LaneSums, swept_motion
 from tippetop.sweeps.launch_arrays import Launches
+from tippetop.sweeps.listed_events import ListedEvents
 from tippetop.sweeps.single_launches import follow_each, needs_single_launches, note_failure
 from tippetop.sweeps.taylor_stepper import stepper
-from tippetop.sweeps.trajectory_samples import SUMMED_UP, TrajectorySamples
+from tippetop.sweeps.trajectory_samples import TrajectorySamples
 
 LANES_AT_ONCE = 2048
 """Launches that are followed together: enough to make little of Python's part, few enough for the
@@ -81,10 +75,10 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
     if not len(good):
         return variables
     launches = cells.launches(good, sweep.duration)
-    method = None
-    if not (needs_single_launches(launches) or {*SUMMED_UP, EVENTS} & set(sweep.keep)):
-        motion = swept_motion(launches.kind)
-        method = stepper(motion, sweep.tolerance, sampled=bool(sweep.sampled))
+    method, sums = None, LaneSums.of(launches.kind, sweep.keep)
+    if not needs_single_launches(launches):
+        motion = swept_motion(launches.kind, sums)
+        method = stepper(motion, sweep.tolerance, sums, sampled=bool(sweep.sampled))
     alike = np.argsort(expected_cost(launches), kind="stable")
     for first in range(0, len(alike), LANES_AT_ONCE):
         block = alike[first : first + LANES_AT_ONCE]
@@ -94,12 +88,14 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         if sweep.keep:
             arrays: dict[str, Any] = {name: variables[name] for name in sweep.sampled}
             azimuths = spread(cells.problem.launch.azimuth, count)[which]
-            samples = TrajectorySamples(some, units, sweep.sample_times, arrays, which, azimuths)
+            samples = TrajectorySamples(
+                some, units, sweep.sample_times, arrays, which, azimuths, sums
+            )
             if sweep.event_places:
                 listed: dict[str, Any] = {
                     name: variables[name] for name in ("event_count", *OF_EVENTS)
                 }
-                samples.events = listed
+                samples.events = ListedEvents(listed, which, units)
         if method is None:
             ends = follow_each(some, sweep.tolerance, sweep.settled, samples)
         else:
@@ -140,24 +136,6 @@ def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
         is_reported, ~monitor.is_trusted(tolerance), monitor.is_breached(tolerance)
     )
     ends.status[is_broken] = STATUSES.index(Status.INACCURATE)
-
-
-@lru_cache
-def swept_motion(kind: Kind) -> Motion:
-    """Equations of motion of sliding, and the work of drilling and of rolling if the law has a
-    torque.
-    """
-    sliding = sliding_motion(kind, guarded=True)
-    if kind.example.torque_free:
-        return sliding
-
-    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        top, state = kind.top(tuple(numbers)), SlidingState.unpack(y)
-        touch = sliding_contact(state.axis, state.momentum, state.velocity, top)
-        powers = resistance_powers(on_table(state, top), touch.traction.torque, top)
-        return (*sliding.rates(y, numbers), *[touch.normal_force * power for power in powers])
-
-    return replace(sliding, rates=rates, size=10)
 
 
 def expected_cost(launches: Launches) -> Array:

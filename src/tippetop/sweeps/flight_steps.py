@@ -7,15 +7,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tippetop.contact.flight import SIZE, Start, flight_motion
+from tippetop.contact.flight import SIZE, Start
 from tippetop.graph.taylor_coefficients import SharedSeries
-from tippetop.integrators.base import Array
+from tippetop.integrators.base import Array, Motion
 from tippetop.integrators.first_fall import single_fall
 from tippetop.integrators.polynomial_minima import least_value, looked_at
 from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
 from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.top import Kind
 from tippetop.mechanics.vectors import Scalar
+from tippetop.sweeps.lane_sums import NO_SUMS, LaneSums, flying_motion
 from tippetop.sweeps.taylor_step import PROBES, extremes, met, order_for, step_size
 from tippetop.sweeps.taylor_stepper import NODES, compiled, padded
 
@@ -28,15 +29,15 @@ ORDER = order_for(FLIGHT_TOLERANCE)
 
 LEFT, VANISHING, WANTED, GIVEN = SIZE, SIZE + 1, slice(SIZE + 2, SIZE + 5), SIZE + 5
 """Rows of what is given after the state, and how many: the time that is left, how many of gap, gap
-rate and gap acceleration vanish, and what is waited for (see `met`).
+rate and gap acceleration vanish, and what is waited for (see `met`). The numbers of sums follow.
 """
 
 
 class FlightSteps(NamedTuple):
-    """Steps of n flights."""
+    """Steps of n flights, of which so many sums are carried."""
 
     after: Array
-    """States at the end, shape (10, n)."""
+    """States and sums at the end, shape (10 + sums, n)."""
     full: Array
     span: Array
     """How long the polynomials serve, and how long the step is, shape (n,)."""
@@ -52,47 +53,60 @@ class FlightSteps(NamedTuple):
     """Least and largest n_z."""
     state: Array
     guards: Array
-    """Coefficients in powers of time, shapes (10, ORDER + 1, n) and (guards, ORDER + 1, n)."""
-
-
-def flight_steps(kind: Kind, starts: Array, numbers: Array) -> FlightSteps:
-    """Return the steps of flights that begin with these numbers, shape (GIVEN, n), of tops with
-    these numbers, shape (kind.numbers, n).
+    """Coefficients in powers of time, shapes (10 + sums, ORDER + 1, n) and (guards, ORDER + 1, n).
     """
-    count = starts.shape[1]
+
+
+def flight_steps(
+    kind: Kind, starts: Array, numbers: Array, sums: LaneSums = NO_SUMS
+) -> FlightSteps:
+    """Return the steps of flights that begin with these numbers, shape (GIVEN + sums, n), of tops
+    with these numbers, shape (kind.numbers, n).
+    """
+    count, size = starts.shape[1], SIZE + sums.count
     start, parameters = padded(starts), padded(numbers)
-    guards = len(flight_motion(kind).guards)
-    made = np.empty((SIZE + 8, start.shape[1]))
-    terms = np.empty(((SIZE + guards) * (ORDER + 1), start.shape[1]))
-    _code(kind)(start, parameters, made, terms)
-    state, falls = np.split(terms.reshape(-1, ORDER + 1, start.shape[1])[..., :count], [SIZE])
-    return FlightSteps._make([made[:SIZE, :count], *made[SIZE:, :count], state, falls])
+    guards = len(flying_motion(kind, sums).guards)
+    made = np.empty((size + 8, start.shape[1]))
+    terms = np.empty(((size + guards) * (ORDER + 1), start.shape[1]))
+    _code(kind, sums)(start, parameters, made, terms)
+    state, falls = np.split(terms.reshape(-1, ORDER + 1, start.shape[1])[..., :count], [size])
+    return FlightSteps._make([made[:size, :count], *made[size:, :count], state, falls])
 
 
 @lru_cache(maxsize=16)
-def _code(kind: Kind) -> Callable[..., None]:
+def _code(kind: Kind, sums: LaneSums) -> Callable[..., None]:
+    motion, on_edge = flying_motion(kind, sums), is_edge(kind.example.surface)
+
     def rows(start: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
-        step = flight_step(kind, start, numbers, NODES)
+        step = flight_step(motion, start, numbers, NODES, on_edge=on_edge)
         return [*step.after, *step[1:9], *chain(*step.state), *chain(*step.guards)]
 
-    count = (SIZE + len(flight_motion(kind).guards)) * (ORDER + 1)
-    return compiled(rows, GIVEN, kind.numbers, count, effort=0)
+    count = (motion.size + len(motion.guards)) * (ORDER + 1)
+    return compiled(rows, GIVEN + sums.count, kind.numbers, count, effort=0)
 
 
 def flight_step(
-    kind: Kind, start: Sequence[Any], numbers: Sequence[Scalar], plain: Arithmetic
+    motion: Motion,
+    start: Sequence[Any],
+    numbers: Sequence[Scalar],
+    plain: Arithmetic,
+    *,
+    on_edge: bool,
 ) -> FlightSteps:
-    """Return the step of one flight that begins with these numbers."""
-    motion = flight_motion(kind)
+    """Return the step of one flight that begins with these numbers, of a top with these numbers.
+
+    An edge's guard is no gap (`on_edge`), and says nothing of its height.
+    """
     y = solved(
-        [SharedSeries(unknown, plain) for _ in range(SIZE)],
-        start[:SIZE],
+        [SharedSeries(unknown, plain) for _ in range(motion.size)],
+        [*start[:SIZE], *start[GIVEN:]],
         lambda y: motion.rates(y, numbers),
     )
     guards = [guard.value(y, numbers).up_to(ORDER)[: ORDER + 1] for guard in motion.guards]
     state = [series.up_to(ORDER)[: ORDER + 1] for series in y]
     # Beside a large gap what is left out of the axis is compared with less.
-    full = step_size([*state[:3], *guards], start[LEFT], plain, axis=3)
+    sums = state[SIZE:]
+    full = step_size([*state[:3], *guards], start[LEFT], plain, axis=3, sums=sums)
     gap, *faces = guards
     span, doubt = single_fall(divided(gap, start[VANISHING], plain), full, plain)
     span = plain.least(span, full)
@@ -101,8 +115,7 @@ def flight_step(
         span, doubt = plain.least(fall, span), doubt + unsure
     touches = plain.below(span, full)
     floor, ceiling = extremes(state[2], span, plain)
-    if is_edge(kind.example.surface):
-        # A guard that is no gap says nothing of its height.
+    if on_edge:
         doubt += 1.0
     doubt += met(floor, ceiling, start[WANTED], plain)
     highest = [highest_value(terms, span, plain) for terms in (gap, state[9])]

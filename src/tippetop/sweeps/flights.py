@@ -42,6 +42,7 @@ from tippetop.sweeps.flight_steps import (
     divided,
     flight_steps,
 )
+from tippetop.sweeps.lane_sums import NO_SUMS, LaneSums
 from tippetop.sweeps.launch_arrays import Flags, Indices
 from tippetop.sweeps.taylor_step import is_singular
 from tippetop.sweeps.taylor_stepper import NumPyArithmetic
@@ -61,6 +62,8 @@ class Flown(NamedTuple):
     """Whether it could not be followed to its end, as its polynomials are no numbers."""
     state: State
     """The states at the end."""
+    sums: Array
+    """The numbers of sums at the end, shape (sums, n)."""
     highest_gap: Array
     highest: Array
     """Largest gap of each, and largest height of its centre of mass."""
@@ -76,19 +79,23 @@ def fly_all(
     vanishing: Indices,
     seen: tuple[TipMotion, Indices, Array],
     sampled: tuple[TrajectorySamples, Indices] | None = None,
+    carried: tuple[LaneSums, Array] | None = None,
 ) -> Flown:
     """Fly until the table is touched, for the `horizon` at most: all of shape (n,).
 
     The tops are told by their dimensionless numbers, shape (kind.numbers, n); of gap, gap rate and
     gap acceleration so many are `vanishing` at the start. `seen` is what follows the tip of the
     axis, the numbers of the launches there, and the times at the start. `sampled` has the samples
-    to take, and the numbers of the launches in them.
+    to take, and the numbers of the launches in them; `carried` the sums, and their numbers at the
+    start, shape (sums, n).
     """
     tip, launches, begins = seen
     count = len(horizon)
+    sums, summed = carried or (NO_SUMS, np.empty((0, count)))
     time, steps, lost = np.zeros(count), np.zeros(count), np.zeros(count, dtype=bool)
     landed, highest = lost.copy(), np.zeros((2, count))
-    starts = np.empty((GIVEN, count))
+    starts = np.empty((GIVEN + sums.count, count))
+    starts[GIVEN:] = summed
     starts[:SIZE] = np.broadcast_arrays(*state.pack())
     starts[LEFT], starts[VANISHING], starts[WANTED] = horizon, vanishing, tip.pauses(launches)
     highest[1] = starts[SIZE - 1]
@@ -96,7 +103,8 @@ def fly_all(
     while len(active):
         every = len(active) == count
         begin, tops = (starts, numbers) if every else (starts[:, active], numbers[:, active])
-        made = flight_steps(kind, begin, tops)
+        sums.to_nearer_pole(begin, begin[GIVEN:])
+        made = flight_steps(kind, begin, tops, sums)
         doubtful = np.flatnonzero(made.doubt)
         if len(doubtful):
             which = active[doubtful]
@@ -116,7 +124,8 @@ def fly_all(
             start = begins[active] + time[active]
             samples.take(cells, start, made.state, np.where(moves, start + made.span, -np.inf))
         active, over, touches = active[moves], over[moves], touches[moves]
-        starts[:SIZE, active], starts[VANISHING, active] = made.after[:, moves], 0.0
+        starts[:SIZE, active], starts[VANISHING, active] = made.after[:SIZE, moves], 0.0
+        starts[GIVEN:, active] = made.after[SIZE:, moves]
         passed = time[active] + made.span[moves]
         time[active] = np.where(over & ~touches, horizon[active], passed)
         starts[LEFT, active] = horizon[active] - time[active]
@@ -126,7 +135,7 @@ def fly_all(
     last = State.unpack(list(starts[:SIZE]))
     ground = support_at(last.axis, kind.top(tuple(numbers)).surface)[0]
     last = last._replace(height=np.where(landed, ground, last.height))
-    return Flown(time, landed, lost, last, highest[0], highest[1], steps)
+    return Flown(time, landed, lost, last, starts[GIVEN:], highest[0], highest[1], steps)
 
 
 def look_closer(

@@ -58,6 +58,8 @@ class Collisions(NamedTuple):
     """Which impacts were computed."""
     rebounds: Flags
     """Which tops leave the table."""
+    impulse: Array
+    """Normal impulses."""
 
 
 class ImpactsUnderWay:
@@ -145,6 +147,7 @@ def collide(state: State, top: Top, restitution: Array) -> Collisions:
     impacts = ImpactsUnderWay(state, top)
     struck = impacts.press(impacts.sinks, restores=False)
     after, rebounds = impacts.after(), np.zeros_like(struck)
+    impulse = impacts.impulse[FIRST].copy()
     bounces = struck & (restitution > 0.0)
     if bounces.any():
         finished = impacts.restore(bounces, restitution)
@@ -154,7 +157,8 @@ def collide(state: State, top: Top, restitution: Array) -> Collisions:
         struck &= ~bounces | (finished & (rising >= 0.0))
         rebounds = struck & bounces & (rising > SLOWEST_REBOUND)
         after = chosen(rebounds, later, after)
-    return Collisions(chosen(struck, after, state), struck, rebounds)
+        impulse = np.where(rebounds, impacts.impulse[FIRST], impulse)
+    return Collisions(chosen(struck, after, state), struck, rebounds, impulse)
 
 
 def chosen(which: Flags, some: State, others: State) -> State:

@@ -12,15 +12,12 @@ from tippetop.results.accumulation import accumulate, before_launch
 from tippetop.results.metrics import STATUSES
 from tippetop.sweeps.axis_extremes import TipMotion
 from tippetop.sweeps.launch_arrays import Flags, Indices, Launches, branched
-from tippetop.sweeps.taylor_step import LANES
+from tippetop.sweeps.taylor_step import LANES, SLIDING
 from tippetop.sweeps.taylor_stepper import LaneStepper
 from tippetop.sweeps.trajectory_samples import TrajectorySamples
 
 HELD_BY_LANES = {"time", "status", "steps", "turned", "arrived"}
 """Quantities that lanes hold themselves until their launches end."""
-
-LOSSES = slice(8, 10)
-"""Rows of the work of drilling and of rolling, where a law has a torque."""
 
 
 class Slots:
@@ -81,6 +78,27 @@ class Slots:
         times: Array = self.rows[self.layout.remaining]
         return times
 
+    @property
+    def sums(self) -> Array:
+        """The numbers of the sums, a view of shape (sums, n)."""
+        sums: Array = self.rows[SLIDING : self.layout.size]
+        return sums
+
+    def begin_sums(self) -> None:
+        """Let the sums begin at launch."""
+        if self.samples is not None:
+            azimuth = self.samples.azimuths[self.cell]
+            self.stepper.sums.begin(self.rows, self.sums, azimuth)
+
+    def to_nearer_pole(self) -> None:
+        """Take the angles about the axis to the chart of the nearer pole."""
+        self.stepper.sums.to_nearer_pole(self.rows, self.sums)
+
+    def strike(self, lanes: Indices, lost: Array) -> None:
+        """Take in the energy that some lanes lose in impacts, shape (k,)."""
+        accumulate(self.ends, self.cell[lanes], struck=lost)
+        self.stepper.sums.strike(self.sums, lanes, lost)
+
     def time(self, lanes: Indices | Flags) -> Array:
         """Return the time of some lanes."""
         times: Array = self.end[lanes] - self.remaining[lanes]
@@ -90,7 +108,7 @@ class Slots:
         """Put down and return the times left at the next samples of some lanes."""
         due = np.inf if self.samples is None else self.samples.due[self.cell[lanes]]
         time_left: Array = self.end[lanes] - due
-        if self.layout.numbers > self.layout.due:
+        if self.layout.is_sampled:
             self.numbers[self.layout.due][lanes] = time_left
         return time_left
 
@@ -154,7 +172,7 @@ class Slots:
             return
         ends, cells = self.ends, self.cell[lanes]
         if self.samples is not None:
-            self.samples.take_last(cells, state, time)
+            self.samples.take_last(cells, state, time, self.sums[:, lanes])
         fine = np.all(np.isfinite(np.array(np.broadcast_arrays(*state.pack()))), axis=0)
         stayed = np.isnan(ends.lift_off[cells]) & (ends.flights[cells] == 0)
         force, down, up = self.tip.least[:, lanes]
@@ -171,8 +189,11 @@ class Slots:
             down=down,
             up=-up,
         )
-        if self.layout.size == LOSSES.stop:
-            drilled, rolled = -self.rows[LOSSES][:, lanes]
-            accumulate(ends, cells, drilled=drilled, rolled=rolled)
+        if self.stepper.sums.count:
+            sums = self.stepper.sums.run_sums(self.sums[:, lanes])
+            drilled, rolled, braked = sums.losses
+            descended = sums.descent_work(self.tops(lanes))
+            parts = {"drilled": drilled, "rolled": rolled, "braked": braked}
+            accumulate(ends, cells, **parts, descended=descended)
         self.rows[self.layout.remaining, lanes] = 0.0
         self.alive[lanes] = False

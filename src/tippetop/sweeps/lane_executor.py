@@ -18,7 +18,7 @@ from tippetop.sweeps.axis_extremes import FORCE
 from tippetop.sweeps.lane_arrays import Slots
 from tippetop.sweeps.launch_arrays import Checkpoint, Flags, Indices, Launches, picked
 from tippetop.sweeps.polynomial_arcs import arcs
-from tippetop.sweeps.taylor_step import LANES, SLIDING, is_singular
+from tippetop.sweeps.taylor_step import LANES, is_singular
 from tippetop.sweeps.taylor_stepper import LaneStepper
 from tippetop.sweeps.trajectory_samples import TrajectorySamples
 from tippetop.sweeps.transitions import LaneTransitions
@@ -67,6 +67,7 @@ class Lanes:
             lanes = np.arange(len(slots.cell))
             slots.place(lanes, picked(launches.state, slots.cell), np.zeros(len(lanes)))
             slots.remaining[~slots.alive] = 0.0
+            slots.begin_sums()
             self.transitions.launch(lanes[: len(launches)], launches.state)
             slots.look_ahead(lanes)
         else:
@@ -96,9 +97,10 @@ class Lanes:
     def _stride(self) -> int:
         """Take a step on every lane that does not wait; return how many wait from here on."""
         slots, layout = self.slots, self.slots.layout
+        slots.to_nearer_pole()
         before, after = slots.rows, slots.spare
         self.slots.stepper.step(before, after, slots.numbers)
-        if slots.samples is not None:
+        if slots.samples is not None and layout.is_sampled:
             self._sample(slots.samples, before, after)
         waiting = after[layout.pause].nonzero()[0]
         if len(waiting):
@@ -125,7 +127,7 @@ class Lanes:
                 slots.end[lanes] - rows[layout.remaining, lanes] for rows in (before, after)
             )
             jet = slots.stepper.jet(before[:, lanes], slots.numbers[:, lanes])
-            samples.take(slots.cell[lanes], start, jet.state[:SLIDING], end)
+            samples.take(slots.cell[lanes], start, jet.state, end)
             slots.look_ahead(lanes)
 
     def _resume_waiting(self) -> None:
@@ -152,8 +154,7 @@ class Lanes:
         slots.rows[: layout.size, lanes], span = followed.after, followed.span
         slots.rows[layout.remaining, lanes] = remaining - span
         if slots.samples is not None:
-            cells, state = slots.cell[lanes], jet.state[:SLIDING]
-            slots.samples.take(cells, start, state, slots.time(lanes))
+            slots.samples.take(slots.cell[lanes], start, jet.state, slots.time(lanes))
         slots.rows[layout.step_time, lanes] = held
         slots.rows[layout.steps, lanes] += 1
         slots.held[lanes] = 0.0

@@ -214,8 +214,7 @@ def sweep(
     keep
         Variables over time, such as ``["tilt", "axis"]``, of which samples of every launch are
         kept, by their names in a run. They are not numbers after the end of a run that ends before
-        `duration`, and `is_sampled` says so. For what is summed up along a run, such as x, y,
-        orientation and work, every launch is followed by itself, which takes longer.
+        `duration`, and `is_sampled` says so.
     samples
         Number of equally spaced samples from launch to `duration`, of what is kept; 201 by default.
     times
@@ -224,7 +223,7 @@ def sweep(
         Number of events of a run, the first ones, that are kept where "events" is in `keep`; 20 by
         default. They are `event_time`, `event_kind`, `event_impulse`, `event_energy_lost` and
         `event_surface`, not numbers where there are fewer, and `event_count` is how many there
-        were. Every launch is then followed by itself.
+        were.
     events, until
         Not in a sweep: they are refused with a sentence. `simulate` finds the instants at which
         functions of one's own pass through zero.

@@ -1,7 +1,7 @@
 """Launches of a sweep that are followed one by one, each as a single launch is."""
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -22,23 +22,33 @@ from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import RunMetrics
 from tippetop.support.errors import Unavailable
 from tippetop.sweeps.launch_arrays import Launches, single
-from tippetop.sweeps.trajectory_samples import TrajectorySamples
+from tippetop.sweeps.trajectory_samples import SampledLaunch, TrajectorySamples
 from tippetop.theory.prediction import is_held
 
 _LOG = logging.getLogger(__name__)
 
 
-def needs_single_launches(launches: Launches) -> bool:
-    """Return whether every launch of a sweep must be followed by itself.
+SINGLE: Mapping[str, Callable[[Launches], bool]] = {
+    "a body of several surfaces, because steps of many launches follow one surface, and another one"
+    " may touch at any time": lambda launches: isinstance(launches.kind.example.surface, Hull),
+    "a contact with rules of its own, because the steps do not know its modes": (
+        lambda launches: launches.rules is not None
+    ),
+    "a law or surface that chooses between formulas (`tippetop.extend.where`, `abs`, `min`, `max`,"
+    " and surfaces of arcs), because the steps do not see past the place where another formula"
+    " takes over": lambda launches: has_choices(launches.kind.example),
+}
+"""What launches are followed by themselves from their start, with the reason, in the words of the
+documentation (`docs/howto/sweep.md`).
 
-    The steps of lanes cannot treat several surfaces, a slope, air, users' rules, or a law that
-    chooses between formulas. Single launches leave the lanes later too: in `transitions`, and
-    where a lane's motion becomes stiff (`lane_executor`).
-    """
-    example = launches.kind.example
-    has_own_rules, is_hull = launches.rules is not None, isinstance(example.surface, Hull)
-    has_field = launches.kind.field is not None
-    return has_own_rules or is_hull or has_field or has_choices(example)
+Others leave the lanes later: in `transitions`, and where their motion becomes stiff
+(`lane_executor`).
+"""
+
+
+def needs_single_launches(launches: Launches) -> bool:
+    """Return whether every launch of a sweep must be followed by itself from its start."""
+    return any(needs_it(launches) for needs_it in SINGLE.values())
 
 
 def follow_each(
@@ -57,7 +67,9 @@ def follow_each(
         try:
             automaton, state = launches.automaton(i), single(launches.state, i)
             start, end = automaton.launch(state), float(launches.end[i])
-            sampled = None if samples is None else (samples, i)
+            sampled = None
+            if samples is not None:
+                sampled = SampledLaunch.at_launch(samples, i, state.axis)
             begin = automaton, state, 0.0
             ended, _ = follow(begin, start, end, tolerance, settled, sampled=sampled)
         except (MemoryError, Unavailable):
@@ -91,36 +103,32 @@ def follow(
     tolerance: float,
     settled: float | None = None,
     launched: State | None = None,
-    sampled: tuple[TrajectorySamples, int] | None = None,
+    sampled: SampledLaunch | None = None,
 ) -> tuple[Ends, RunMetrics]:
     """Return what a launch comes to, followed from a state, a time and what follows, or until it
     settles.
 
-    `launched` is the state at launch, where that is another. `sampled` has the samples to take, and
-    the number of the launch in them.
+    `launched` is the state at launch, where that is another. `sampled` has the samples to take.
     """
     automaton, state, time = begin
     top = automaton.top
     method = make_integrator(None, tolerance_of_steps(tolerance, automaton.top))
-    azimuth = 0.0 if sampled is None else float(sampled[0].azimuths[sampled[1]])
     trajectory = Trajectory(automaton, start, end, method, time=time)
     run_metrics = RunMetrics(top, launched or state)
-    times = np.empty(0) if sampled is None else sampled[0].times_left(sampled[1])
-    segments, recorder = (
-        trajectory.segments(),
-        Recorder(top, state, azimuth, times, start.energy_lost, automaton.pulls),
-    )
+    times = np.empty(0) if sampled is None else sampled.samples.times_left(sampled.launch)
+    recorder = Recorder(top, state, 0.0, times, start.energy_lost, automaton.pulls)
+    if sampled is not None:
+        recorder.go_on_from(float(sampled.sums.turn), sampled.pole)
+    segments = trajectory.segments()
     segments = segments if settled is None else until_settled(trajectory, segments, settled)
     for block in in_blocks(segments):
         recorder.take(block)
         run_metrics.take(block)
     status = recorder.status_of(trajectory)
     if sampled is not None and np.any(times <= trajectory.time):
-        samples, launch = sampled
-        observed = recorder.finish(trajectory.time, trajectory.state, early=False)
-        samples.take_observed(launch, observed, top)
+        sampled.take(recorder.finish(trajectory.time, trajectory.state, early=False), top)
     if sampled is not None:
-        sampled[0].take_events(sampled[1], trajectory.events)
+        sampled.samples.take_events(sampled.launch, trajectory.events)
     return run_metrics.ends(
         trajectory.state, trajectory.time, status, trajectory.events, recorder.sums
     ), run_metrics

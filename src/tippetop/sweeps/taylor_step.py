@@ -72,7 +72,8 @@ class Layout(NamedTuple):
     yet to turn over, and the least and the largest n_z of a band (inf and -inf for none).
 
     Of motions that are sampled, a further number is the time that is left at the next sample, and
-    the last rows tell whether that is in a step that was taken, and have the state there.
+    the last rows tell whether that is in a step that was taken, and have the numbers of the motion
+    there.
     """
 
     size: int
@@ -92,7 +93,7 @@ class Layout(NamedTuple):
     """Row of whether a step ended where another branch of the law takes over."""
     reached: int
     sample: slice
-    """Rows of whether the next sample is reached and of the state there, of motions that are
+    """Rows of whether the next sample is reached and of the numbers there, of motions that are
     sampled.
     """
     rows: int
@@ -112,6 +113,11 @@ class Layout(NamedTuple):
     branch: int | None
     """Which guard tells where another branch of the law takes over, if any does."""
 
+    @property
+    def is_sampled(self) -> bool:
+        """Whether the motion is sampled."""
+        return self.numbers > self.due
+
     @classmethod
     def of(cls, motion: Motion, *, sampled: bool = False) -> "Layout":
         """Return the layout for a motion, which may be sampled."""
@@ -124,7 +130,7 @@ class Layout(NamedTuple):
             slice(turns + 1, due),
         )
         reached = changed + 1
-        rows = reached + (1 + SLIDING if sampled else 0)
+        rows = reached + (1 + size if sampled else 0)
         sample, pauses = slice(reached + 1, rows), slice(parameters, due)
         row = (size, size + 1, carried, carried, pause, least, changed, reached, sample, rows)
         names = [guard.name for guard in motion.guards]
@@ -172,7 +178,7 @@ def stride(
     remaining, steps = before[layout.size :]
     counts, band = numbers[layout.counts], numbers[layout.turns : layout.due]
     state, falls = jet
-    full = step_size(state, remaining, plain, axis=3)
+    full = step_size(state[:SLIDING], remaining, plain, axis=3, sums=state[SLIDING:])
     length, changes, events = later_guards(falls, counts, (full, layout.branch), plain)
     floor, ceiling = extremes(state[2], length, plain)
     events += met(floor, ceiling, band, plain)
@@ -189,10 +195,10 @@ def stride(
         plain.choose(pause, math.inf + 0.0 * value, value) for value in (force, floor, -ceiling)
     ]
     samples = []
-    if layout.numbers > layout.due:
+    if layout.is_sampled:
         due = numbers[layout.due]
         reached = goes * (1.0 - plain.below(due, stays[layout.remaining]))
-        samples = [reached, *(horner(terms, remaining - due) for terms in state[:SLIDING])]
+        samples = [reached, *(horner(terms, remaining - due) for terms in state)]
     return [*stays, full, pause, *least, plain.choose(pause, 0.0 * changes, changes), *samples]
 
 
@@ -249,13 +255,18 @@ def later_guards(
 
 
 def step_size(
-    state: Sequence[Sequence[Scalar]], remaining: Scalar, plain: Arithmetic, axis: int = 0
+    state: Sequence[Sequence[Scalar]],
+    remaining: Scalar,
+    plain: Arithmetic,
+    axis: int = 0,
+    sums: Sequence[Sequence[Scalar]] = (),
 ) -> Scalar:
     """Step for which the last terms of the polynomials are below the tolerance, or all that is
     left.
 
-    They are compared with the state; the first, as many as are of the axis, with `FAST` at most,
-    and with less beyond `FASTER`. The step is 0 where they are no numbers.
+    They, and those of sums along the motion, are compared with the state; the first, as many as are
+    of the axis, with `FAST` at most, and with less beyond `FASTER`. The step is 0 where they are no
+    numbers.
     """
     order = len(state[0]) - 1
 
@@ -264,8 +275,8 @@ def step_size(
 
     def ratio(k: int) -> Scalar:
         # Of fast motion the last terms are so large that their squares are no numbers.
-        scale = 1.0 / (plain.total([plain.size(series[k]) for series in state]) + TINY)
-        terms = [scale * series[k] for series in state]
+        scale = 1.0 / (plain.total([plain.size(series[k]) for series in every]) + TINY)
+        terms = [scale * series[k] for series in every]
         others = square(terms[axis:])
         left_out = size / others
         if axis:
@@ -273,6 +284,7 @@ def step_size(
             left_out = plain.least(bounded / squares, size / (squares + others))
         return scale * left_out**0.5
 
+    every = [*state, *sums]
     size = square([series[0] for series in state])
     bounded = size
     if axis:

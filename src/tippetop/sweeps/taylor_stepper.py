@@ -13,6 +13,7 @@ from tippetop.graph.taylor_coefficients import NodeArithmetic
 from tippetop.integrators.base import Array, Motion, Rows
 from tippetop.mechanics.vectors import Scalar
 from tippetop.support.interrupts import deferred
+from tippetop.sweeps.lane_sums import NO_SUMS, LaneSums
 from tippetop.sweeps.taylor_step import LANES, Jet, Layout, expansion, order_for, stride
 
 NODES = NodeArithmetic()
@@ -45,10 +46,15 @@ class NumPyArithmetic:
 
 
 class LaneStepper:
-    """Taylor's method for one motion, of some order, compiled when first used."""
+    """Taylor's method for one motion, of some order, compiled when first used.
 
-    def __init__(self, motion: Motion, order: int, *, sampled: bool = False) -> None:
-        self.motion, self.order = motion, order
+    The last numbers of the motion are sums along it.
+    """
+
+    def __init__(
+        self, motion: Motion, order: int, sums: LaneSums = NO_SUMS, *, sampled: bool = False
+    ) -> None:
+        self.motion, self.order, self.sums = motion, order, sums
         self.layout = Layout.of(motion, sampled=sampled)
 
     def step(self, before: Array, after: Array, numbers: Array) -> None:
@@ -79,9 +85,11 @@ class LaneStepper:
 
 
 @lru_cache(maxsize=16)
-def stepper(motion: Motion, tolerance: float, *, sampled: bool = False) -> LaneStepper:
-    """Taylor's method for a motion, which may be sampled."""
-    return LaneStepper(motion, order_for(tolerance), sampled=sampled)
+def stepper(
+    motion: Motion, tolerance: float, sums: LaneSums = NO_SUMS, *, sampled: bool = False
+) -> LaneStepper:
+    """Taylor's method for a motion with sums, which may be sampled."""
+    return LaneStepper(motion, order_for(tolerance), sums, sampled=sampled)
 
 
 @lru_cache(maxsize=16)

@@ -6,14 +6,14 @@ of time. `variables` makes those of a run of them, by the functions of a single 
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.contact.contact_mode import ContactMode
-from tippetop.contact.flight import TOUCHING, Flight
-from tippetop.contact.mode import Event, EventKind, Mode
+from tippetop.contact.flight import SIZE, TOUCHING, Flight
+from tippetop.contact.mode import Event, Mode
 from tippetop.contact.natural_launch import initial_mode
 from tippetop.contact.readings import TOLD, Instants, instants, read_of_kind
 from tippetop.integrators.base import Array
@@ -24,25 +24,16 @@ from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Scalar
-from tippetop.results.catalogue import SAMPLED, Variable
-from tippetop.results.samples import OF_INSTANTS, Samples, continuous, event_in_si, observe
+from tippetop.mechanics.vectors import Scalar, Vector
+from tippetop.results.samples import OF_INSTANTS, OF_SUMS, Samples, continuous
+from tippetop.results.sums import RunSums
+from tippetop.sweeps.lane_sums import LaneSums
 from tippetop.sweeps.launch_arrays import Indices, Launches, branched, single
+from tippetop.sweeps.listed_events import ListedEvents
 from tippetop.sweeps.taylor_step import SLIDING
 
-SUMMED_UP: Mapping[str, Variable] = {
-    name: variable for name, variable in SAMPLED.items() if name not in OF_INSTANTS
-}
-"""Variables over time that are summed up along a run: for these a launch is followed by itself."""
-
-OF_THE_AXIS = {"tilt", "azimuth", "spin", "axis", "angular_momentum"}
-"""Those of them that follow from axis and angular momentum alone."""
-
-KINDS = tuple(EventKind)
-"""Kinds of events, by the numbers that stand for them while launches are followed."""
-
-FLYING = 10
-"""How many numbers the state of a flight has."""
+OF_THE_AXIS = {"tilt", "azimuth", "spin", "axis", "angular_momentum", *OF_SUMS} - {"energy"}
+"""Variables that follow from axis and angular momentum, and from sums, alone."""
 
 AT_ONCE = 8192
 """Samples of which variables are computed together, about: few enough for the cache."""
@@ -63,18 +54,18 @@ class TrajectorySamples:
     times
         The sample times, s, shape (k,).
     variables
-        Arrays for the variables in SI, by names of `SAMPLED`, shape (m, k, ...); those that are
-        `SUMMED_UP` are filled by `take_observed` alone.
+        Arrays for the variables in SI, by names of `SAMPLED`, shape (m, k, ...).
     rows
         The rows of the launches in these arrays, shape (n,).
     azimuths
         Directions into which the axes lean at launch, rad, shape (n,).
+    sums
+        The sums that lanes carry after the numbers of the state.
 
     Attributes
     ----------
     events
-        Arrays for the variables of the events in SI, by name, of shape (m, places); none if events
-        are not kept.
+        The events, if they are kept.
     due
         Time of the next sample of each launch in natural units, shape (n,); inf after the last.
     """
@@ -87,9 +78,10 @@ class TrajectorySamples:
         variables: Mapping[str, Array],
         rows: Indices,
         azimuths: Array,
+        sums: LaneSums,
     ) -> None:
-        self.azimuths = azimuths
-        self.events: Mapping[str, Array] = {}
+        self.azimuths, self.sums = azimuths, sums
+        self.events: ListedEvents | None = None
         self._launches, self._times = launches, times
         self._units = tuple(one_for_all(unit) for unit in units)
         self._numbers = [one_for_all(row) for row in launches.numbers]
@@ -97,16 +89,16 @@ class TrajectorySamples:
         self._next = np.zeros(len(launches), dtype=np.intp)
         self._later = np.append(times, np.inf)
         self.due = np.broadcast_to(self._later[0] / units.time, (len(launches),)).copy()
-        self._waiting: dict[int, Waiting] = {SLIDING: [], FLYING: []}
+        self._waiting: dict[int, Waiting] = {SLIDING: [], SIZE: []}
         self._count = 0
         self._needs_forces = bool(set(variables) - OF_THE_AXIS)
 
     def put(self, launches: Indices, numbers: Array) -> None:
-        """Put the numbers of the states of some launches at their next samples, shape (SLIDING, m)
-        or (FLYING, m).
+        """Put the numbers of some launches at their next samples: of the states, of sliding or of
+        flying, and of the sums; shape (numbers, m).
         """
         places = self._next[launches]
-        self._waiting[len(numbers)].append((launches, places, numbers))
+        self._waiting[len(numbers) - self.sums.count].append((launches, places, numbers))
         self._pass(launches, places + 1)
         self._count += len(launches)
         if self._count >= AT_ONCE:
@@ -125,9 +117,9 @@ class TrajectorySamples:
             self.put(some, np.array([horner(row[:, which], offset) for row in terms]))
             which = which[self.due[some] <= until[which]]
 
-    def take_last(self, launches: Indices, state: State, time: Array) -> None:
-        """Take the samples that are due when some launches end, in these states at these times:
-        those of launches that end as they begin, and what rounding left over.
+    def take_last(self, launches: Indices, state: State, time: Array, sums: Array) -> None:
+        """Take the samples that are due when some launches end, in these states at these times,
+        with these sums: those of launches that end as they begin, and what rounding left over.
         """
         for place in np.flatnonzero(self.due[launches] <= time).tolist():
             launch, one = launches[place : place + 1], single(state, place)
@@ -136,7 +128,7 @@ class TrajectorySamples:
             flies = not touches or isinstance(initial_mode(one, top)[0], Flight)
             numbers = one.pack() if flies else along_table(one).pack()
             while self.due[launch[0]] <= time[place]:
-                self.put(launch, np.array([numbers]).T)
+                self.put(launch, np.array([[*numbers, *sums[:, place]]]).T)
 
     def times_left(self, launch: int) -> Array:
         """Return the times of the samples of a launch that are not taken, in natural units."""
@@ -147,29 +139,16 @@ class TrajectorySamples:
         """Take the next samples of a launch from those of a run, in natural units."""
         first = self._next[launch]
         last = first + len(samples.times)
-        units = self._units_of(launch)
-        sums = observe(samples, top, units) if SUMMED_UP.keys() & self._variables.keys() else {}
+        observed = samples.instants, samples.sums, samples.pole
         for name, values in self._variables.items():
-            in_si = OF_INSTANTS.get(name)
-            observed = sums[name] if in_si is None else in_si(samples.instants, top, units)
-            if name == "orientation":
-                observed = continuous(observed)
-            values[self._rows[launch], first:last] = observed
+            in_si = variable_in_si(name, observed, top, self._units_of(launch))
+            values[self._rows[launch], first:last] = in_si
         self._pass(np.array([launch]), np.array([last]))
 
     def take_events(self, launch: int, events: Sequence[Event]) -> None:
-        """Take the events of a launch, in natural units and in order of time, if they are kept."""
-        if not self.events:
-            return
-        row, units = self._rows[launch], self._units_of(launch)
-        self.events["event_count"][row] = len(events)
-        for place, event in enumerate(events[: self.events["event_time"].shape[1]]):
-            in_si = event_in_si(event, units)
-            self.events["event_time"][row, place] = in_si.time
-            self.events["event_kind"][row, place] = KINDS.index(in_si.kind)
-            self.events["event_impulse"][row, place] = in_si.impulse
-            self.events["event_energy_lost"][row, place] = in_si.energy_lost
-            self.events["event_surface"][row, place] = in_si.surface
+        """Take the next events of a launch, in natural units, if they are kept."""
+        if self.events is not None:
+            self.events.take(launch, events)
 
     def _pass(self, launches: Indices, places: Indices) -> None:
         """Let the next samples be those of these numbers."""
@@ -192,8 +171,10 @@ class TrajectorySamples:
         """
         self._compute_waiting()
         launches, places = np.nonzero(~self.is_sampled)
-        for values in self._variables.values():
+        for name, values in self._variables.items():
             values[self._rows[launches], places] = np.nan
+            if name == "orientation":
+                values[self._rows] = continuous(values[self._rows])
 
     def _compute_waiting(self) -> None:
         """Compute the variables of the samples that wait."""
@@ -210,11 +191,13 @@ class TrajectorySamples:
         """Compute the variables of samples of some launches, from the numbers of their states."""
         units = self._units_of(launches)
         top = self._launches.kind.top(tuple(of_some(row, launches) for row in self._numbers))
+        numbers, summed = np.split(numbers, [len(numbers) - self.sums.count])
         seen = self._instants(top, numbers) if self._needs_forces else of_the_axis(top, numbers)
+        observed = seen, self.sums.run_sums(summed), self.sums.pole(summed)
         flat = self._rows[launches] * len(self._times) + places
         for name, values in self._variables.items():
             by_instant = values.reshape(-1, *values.shape[2:])
-            by_instant[flat] = OF_INSTANTS[name](seen, top, units)
+            by_instant[flat] = variable_in_si(name, observed, top, units)
 
     def _instants(self, top: Top, numbers: Array) -> Instants:
         """Return all of `Instants` of tops from the numbers of their states."""
@@ -224,6 +207,39 @@ class TrajectorySamples:
             if is_branched(top.friction):
                 mode = ContactMode(branched(top, mode.state(list(numbers))), pulls=True)
         return Instants.unpack(read_of_kind(instants, mode, self._launches.kind, numbers))
+
+
+class SampledLaunch(NamedTuple):
+    """A launch that is sampled, and its sums at the start of a part that is followed by itself."""
+
+    samples: TrajectorySamples
+    launch: int
+    """Number of the launch in the samples."""
+    sums: RunSums
+    pole: float
+    """Pole of the chart of the angle about the axis."""
+
+    @classmethod
+    def at_launch(cls, samples: TrajectorySamples, launch: int, axis: Vector) -> "SampledLaunch":
+        """Return a launch from its start on, where its axis is this one."""
+        pole = 1.0 if axis[2] >= 0.0 else -1.0
+        sums = RunSums.at_launch(pole * float(samples.azimuths[launch]), 0.0)
+        return cls(samples, launch, sums, pole)
+
+    def take(self, samples: Samples, top: Top) -> None:
+        """Take the samples of the part, whose sums but the angle begin at zero."""
+        added = [a + b for a, b in zip(self.sums, samples.sums, strict=True)]
+        sums = RunSums(*added)._replace(turn=samples.sums.turn)
+        self.samples.take_observed(self.launch, samples._replace(sums=sums), top)
+
+
+def variable_in_si(
+    name: str, observed: tuple[Instants, RunSums, Scalar], top: Top, units: Units
+) -> Array:
+    """Return a variable over time in SI from what is observed of it in natural units."""
+    if name in OF_INSTANTS:
+        return OF_INSTANTS[name](observed[0], top, units)
+    return OF_SUMS[name](*observed, top, units)
 
 
 def of_the_axis(top: Top, numbers: Array) -> Instants:

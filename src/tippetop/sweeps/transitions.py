@@ -26,6 +26,7 @@ from tippetop.sweeps.impacts import collide
 from tippetop.sweeps.lane_arrays import HELD_BY_LANES, Slots
 from tippetop.sweeps.launch_arrays import Indices, branched, picked, single
 from tippetop.sweeps.single_launches import follow
+from tippetop.sweeps.trajectory_samples import SampledLaunch
 
 FLIGHT_LIMIT = 50_000
 """Flights after which a launch is given up."""
@@ -95,6 +96,7 @@ class LaneTransitions:
         slots = self.slots
         cells, state = slots.cell[lanes], slots.states(lanes)
         accumulate(slots.ends, cells, lift_off=time)
+        self._list_events(cells, EventKind.LIFT_OFF, time)
         if slots.launches.liftoff == "stop":
             slots.retire(lanes, state, time, Status.LIFTED_OFF)
         else:
@@ -110,7 +112,11 @@ class LaneTransitions:
             numbers = launches.numbers[:, cells]
             sampled = None if slots.samples is None else (slots.samples, cells)
             seen = slots.tip, lanes, time
-            flown = fly_all(state, launches.kind, numbers, horizon, vanishing, seen, sampled)
+            carried = slots.stepper.sums, slots.sums[:, lanes]
+            flown = fly_all(
+                state, launches.kind, numbers, horizon, vanishing, seen, sampled, carried
+            )
+            slots.sums[:, lanes] = flown.sums
             accumulate(
                 ends,
                 cells,
@@ -142,14 +148,17 @@ class LaneTransitions:
         slots = self.slots
         cells, launches = slots.cell[lanes], slots.launches
         top = branched(launches.tops(cells), state)
-        after, struck, rebounds = collide(state, top, launches.restitution[cells])
+        after, struck, rebounds, impulse = collide(state, top, launches.restitution[cells])
         struck &= ~np.asarray(lands_flat(top, state.axis)) & slips(after, top, far=True)
         rebounds &= struck
         sliding = struck & ~rebounds & slides(after, top)
         slots.place(lanes[sliding], picked(after, sliding), time[sliding])
         settled = sliding | rebounds
         lost = np.broadcast_to(energy(state, top) - energy(after, top), settled.shape)
-        accumulate(slots.ends, cells[settled], struck=lost[settled])
+        slots.strike(lanes[settled], lost[settled])
+        self._list_events(cells[settled], EventKind.TOUCHDOWN, time[settled])
+        effects = impulse[settled], lost[settled]
+        self._list_events(cells[settled], EventKind.IMPACT, time[settled], *effects)
         others = np.flatnonzero(~settled)
         transitions = []
         for i in others.tolist():
@@ -180,8 +189,9 @@ class LaneTransitions:
             if not isinstance(transition.next, Status) and not is_for_lanes(transition):
                 self._follow_alone(int(lanes[i]), float(time[i]), single(state, i), transition)
                 continue
-            cell = self.slots.cell[lanes[i]]
-            accumulate(self.slots.ends, cell, struck=transition.energy_lost)
+            self.slots.strike(lanes[i : i + 1], np.array([transition.energy_lost]))
+            if self.slots.samples is not None:
+                self.slots.samples.take_events(int(self.slots.cell[lanes[i]]), transition.events)
             if isinstance(transition.next, Flight):
                 again.append(i)
                 starts.append(int(transition.next.start))
@@ -199,6 +209,19 @@ class LaneTransitions:
         """Note a lift-off."""
         if any(event.kind is EventKind.LIFT_OFF for event in transition.events):
             accumulate(self.slots.ends, self.slots.cell[lane], lift_off=time)
+
+    def _list_events(
+        self,
+        cells: Indices,
+        kind: EventKind,
+        time: Array,
+        impulse: Array | float = 0.0,
+        energy_lost: Array | float = 0.0,
+    ) -> None:
+        """List an event of some launches, if events are kept."""
+        samples = self.slots.samples
+        if samples is not None and samples.events is not None:
+            samples.events.put(cells, kind, time, impulse, energy_lost)
 
     def _settle(self, lane: Indices, transition: Transition, time: Array) -> None:
         """Let a top slide, or end its run."""
@@ -227,15 +250,22 @@ class LaneTransitions:
             self.slots.cell[[lane]],
             np.array([lane]),
         )
-        begin = slots.launches.automaton(int(slots.cell[lane])), state, time
-        launched = single(slots.launches.state, int(slots.cell[lane]))
+        number = int(slots.cell[lane])
+        begin = slots.launches.automaton(number), state, time
+        launched = single(slots.launches.state, number)
+        sampled = None
+        if slots.samples is not None:
+            carried, sums = slots.stepper.sums, slots.sums[:, lane].tolist()
+            sampled = SampledLaunch(
+                slots.samples, number, carried.run_sums(sums), carried.pole(sums)
+            )
         ended, run_metrics = follow(
             begin,
             transition,
             float(slots.end[lane]),
             self.tolerance,
             launched=launched,
-            sampled=None if slots.samples is None else (slots.samples, int(slots.cell[lane])),
+            sampled=sampled,
         )
         parts = of_a_part(ended)
         accumulate(ends, cell, **{name: parts[name] for name in parts if name not in HELD_BY_LANES})
