@@ -43,6 +43,21 @@ def test_ball_rolls_down_with_five_sevenths(slope):
     )
     assert up == 0.0
     assert float(run["energy_error"]) < 1e-12
+    assert float(run["descent"]) == pytest.approx(5.0 / 14.0 * G * math.sin(slope), rel=1e-12)
+
+
+def test_the_account_says_how_far_it_went_down_the_slope():
+    """A ball that slips from rest is 0.5 a t^2 further down."""
+    slope, time = 1.0, 2.0
+    run = tt.simulate(released(slope), duration=time, samples=2)
+    way = 0.5 * G * (math.sin(slope) - MU * math.cos(slope)) * time**2
+    (clause,) = [one for one in tt.describe(run).clauses if one.name == "has_descended"]
+    assert clause.numbers["distance"] == pytest.approx(way, rel=1e-12)
+    assert f"has moved {way:.3g} m down the slope" in str(tt.describe(run))
+    uphill = released(slope).replace({"launch.velocity": (-math.cos(0.7), -math.sin(0.7), 0.0)})
+    climbed = tt.simulate(uphill, duration=0.05, samples=2)
+    assert float(climbed["descent"]) < 0.0
+    assert "mm up the slope" in str(tt.describe(climbed))
 
 
 @pytest.mark.parametrize("slope", [STEEPEST_ROLLING + 1e-6, 1.0, 1.5])

@@ -320,7 +320,16 @@ def _end(facts: Facts) -> list[Clause]:
         clauses.append(Clause("rolls_on", {"tilt": final, "time": time}, "end"))
     else:
         clauses.append(_moving(facts))
-    return [*clauses, *_standing(facts)]
+    return [*clauses, *_standing(facts), *_travelled(facts)]
+
+
+def _travelled(facts: Facts) -> list[Clause]:
+    """Return the clause of how far a top has moved down a table that slopes, or up."""
+    distance = facts.metrics["descent"]
+    if facts.problem.table.is_level:
+        return []
+    name = "has_descended" if distance >= 0.0 else "has_climbed"
+    return [Clause(name, {"distance": abs(distance)}, "end")]
 
 
 def _moving(facts: Facts) -> Clause:

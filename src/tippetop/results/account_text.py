@@ -16,8 +16,9 @@ from tippetop.results.catalogue import METRICS
 from tippetop.results.dataset import require_run
 from tippetop.results.time_digits import time_digits, usual_digits
 
-MILLISECONDS = 0.01
-"""Times below it, s, are written in milliseconds."""
+MILLISECONDS, METRE = 0.01, 1.0
+"""Times below the first, s, are written in milliseconds, distances below the second, m, in
+millimetres."""
 
 
 class Account(NamedTuple):
@@ -145,6 +146,10 @@ def written(gap: str, value: float, units: Mapping[str, str]) -> str:
             return f"{_digits(value, 4)} {units['spin']}"
         case "height" | "length" | "other_length":
             return f"{_digits(1e3 * value, 4)} {units['length']}"
+        case "distance":
+            if value < METRE:
+                return f"{_digits(1e3 * value, 3)} {units['length']}"
+            return f"{_digits(value, 3)} {units['distance']}"
         case "energy":
             return f"{_digits(1e6 * value, 4)} {units['energy']}"
         case "speed":

@@ -399,6 +399,11 @@ METRICS: Mapping[str, Variable] = {
         "energy lost to rolling resistance from launch to end", "J", "lost to rolling"
     ),
     "energy_lost_air": Variable("energy lost to air from launch to end", "J", "lost to air"),
+    "descent": Variable(
+        "distance that the centre of mass moved down a table that slopes; 0 on a level one",
+        "m",
+        "way down the slope",
+    ),
     "max_height": Variable(
         "largest height of the centre of mass above the table",
         "m",

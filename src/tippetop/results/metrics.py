@@ -207,12 +207,24 @@ def metrics(ends: Ends, start: State, top: Top, units: Units) -> dict[str, NDArr
         "energy_lost_drilling": ends.drilled * units.energy,
         "energy_lost_rolling": ends.rolled * units.energy,
         "energy_lost_air": ends.braked * units.energy,
+        "descent": _descent(ends, top) * units.length,
         "max_height": highest * units.length,
         "max_gap": ends.highest_gap * units.length,
         "jellett_change": drift,
         "end_time": ends.time * units.time,
         "steps": ends.steps,
     }
+
+
+def _descent(ends: Ends, top: Top) -> Array:
+    """Return how far the centres of mass moved down the slope, in natural units; 0 on the level."""
+    if top.field is None or top.field.slope is None:
+        level: Array = 0.0 * ends.time
+        return level
+    along, across = top.field.slope
+    pull = top.mass * np.sqrt(along * along + across * across)
+    distances: Array = ends.descended / np.where(pull > 0.0, pull, np.inf)
+    return distances
 
 
 PAST_LEVEL = 1e-6

@@ -6,6 +6,8 @@ import { cleared, digits, shown } from "./units.js";
 // Times below the first, s, are written in milliseconds, from the second on in four digits.
 const MILLISECONDS = 0.01;
 const TENS = 10;
+// Distances below it, m, are written in millimetres.
+const METRE = 1;
 const DEGREE = Math.PI / 180;
 // Slips below it, m/s, are written in mm/s.
 const SLOW = 0.01;
@@ -56,6 +58,9 @@ function written(gap, value, units) {
     case "length":
     case "other_length":
       return `${digits(1e3 * value)} ${part("account.units.length")}`;
+    case "distance":
+      if (value < METRE) return `${digits(1e3 * value, 3)} ${part("account.units.length")}`;
+      return `${digits(value, 3)} ${part("account.units.distance")}`;
     case "energy":
       return `${digits(1e6 * value)} ${part("account.units.energy")}`;
     case "speed":
