@@ -177,4 +177,6 @@ def test_a_law_without_a_force_at_the_launch_is_told_as_that() -> None:
     assert caught.value.field == "friction"
     assert "sqrt(v^2 + s^2)" in caught.value.hint
     moving = REPORT.replace({"launch.slip": (0.1, 0.0), "friction": undefined_at_rest(mu=0.3)})
-    assert moving.friction.mu == 0.3
+    run = tt.simulate(moving, 5.0, samples=2)
+    assert float(run["end_time"]) < 0.1, "its slip ends"
+    assert "The law undefined_at_rest has no finite force at zero slip" in run.attrs["message"]

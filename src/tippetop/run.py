@@ -17,7 +17,12 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import State
 from tippetop.problem.implausible import warn_if_implausible
-from tippetop.problem.problem import Problem, require_problem, top_of
+from tippetop.problem.problem import (
+    Problem,
+    force_missing_at_rest,
+    require_problem,
+    top_of,
+)
 from tippetop.results.catalogue import Outcome
 from tippetop.results.dataset import assemble
 from tippetop.results.derived import variables_of
@@ -32,6 +37,9 @@ from tippetop.results.sampling import DEFAULT_SAMPLES
 from tippetop.support.errors import InvalidInput, require
 from tippetop.support.units import number_in
 from tippetop.support.validation import require_callback
+
+WITHOUT_A_STEP = (Status.FAILED, Status.TOO_MANY_STEPS)
+"""Endings of runs whose law of friction may have no force where slip ends."""
 
 
 @overload
@@ -199,6 +207,7 @@ def simulate(
                     status.value,
                     trajectory.detail and f"Reason: {trajectory.detail.removesuffix('.')}.",
                     breach,
+                    force_missing_at_rest(problem) if status in WITHOUT_A_STEP else "",
                     ambiguity_of(trajectory.events),
                     method.caution,
                 ),

@@ -18,6 +18,7 @@ from tippetop.mechanics.contacts.slip_variables import is_slipping, size, slip_o
 from tippetop.mechanics.face_motion import face_radii
 from tippetop.mechanics.field import OuterField
 from tippetop.mechanics.laws.coulomb import RollingResistance
+from tippetop.mechanics.laws.friction import FrictionLaw
 from tippetop.mechanics.motion import (
     along_table,
     angular_velocity,
@@ -34,7 +35,7 @@ from tippetop.mechanics.surfaces.hull import (
     sizes,
 )
 from tippetop.mechanics.top import Top, natural_state, natural_units
-from tippetop.mechanics.vectors import Functions, Vector
+from tippetop.mechanics.vectors import Functions, Horizontal, Vector
 from tippetop.mechanics.view import Angles, PoleExact, state_from_angles
 from tippetop.problem.air import Air
 from tippetop.problem.bodies import Body
@@ -463,20 +464,44 @@ def _require_finite_friction(problem: Problem) -> None:
     slip = slip_of(axis, momentum, velocity, top)[:2]
     if not is_slipping(axis, momentum, velocity, top):
         slip = (0.0, 0.0)
-    try:
-        traction = top.friction.traction(slip, angular_velocity(axis, momentum, top))
-        if math.isfinite(sum([*traction.force, *traction.torque])):
-            return
-    except ArithmeticError:
-        pass
+    if has_force_at(top.friction, slip, angular_velocity(axis, momentum, top)):
+        return
     raise InvalidInput(
         "friction",
         Described(f"the law {problem.friction.kind}"),
         "",
         f"has no finite force at the slip speed of the launch, {size(slip):.4g} m/s",
-        "let the law have one at every slip, and be 0 without slip: divide by sqrt(v^2 + s^2)"
-        " instead of the slip speed v, with a small speed s",
+        FORCE_AT_REST,
     )
+
+
+FORCE_AT_REST = (
+    "let the law have one at every slip, and be 0 without slip: divide by sqrt(v^2 + s^2) instead"
+    " of the slip speed v, with a small speed s"
+)
+"""What a user's law lacks that divides 0 by 0 where nothing slips."""
+
+
+def has_force_at(law: FrictionLaw, slip: Horizontal, turning: Vector) -> bool:
+    """Return whether a law of friction has a finite force and torque at a slip, m/s."""
+    try:
+        traction = law.traction(slip, turning)
+        return math.isfinite(sum([*traction.force, *traction.torque]))
+    except ArithmeticError:
+        return False
+
+
+# translate: skip
+def force_missing_at_rest(problem: Problem) -> str:
+    """Return a sentence on a law of friction without a finite force at zero slip; empty for others.
+
+    Where dry friction of a point holds, slip ends by the law's set of forces instead.
+    """
+    start, top = along_table(problem.start()), problem.standing()
+    turning = angular_velocity(start[0], start[1], top)
+    if is_set_valued(top.friction) or has_force_at(top.friction, (0.0, 0.0), turning):
+        return ""
+    return f"The law {problem.friction.kind} has no finite force at zero slip: {FORCE_AT_REST}."
 
 
 def _largest_square(problem: Problem) -> float:
