@@ -85,6 +85,50 @@ def test_points_along_a_ball_are_a_ball(count, digits):
     assert piece.fit.deviation <= 2.0 * apart + 1e-12
 
 
+EDGE = math.sqrt(375.0)
+BORED = {
+    "through": [(5, -19.365), (20, 0, 20), (5, EDGE, 20), (5, -19.365)],
+    "to a depth": [(5, -19.365), (20, 0, 20), (0, 20, 20), (0, 10), (5, 10), (5, -19.365)],
+    "closed in other digits": [
+        (5, -19.365),
+        (20, 0, 20),
+        (0, 20, 20),
+        (0, 10),
+        (5, 10),
+        (5, -EDGE),
+    ],
+    "begun above": [(5, 10), (5, -19.365), (20, 0, 20), (0, 20, 20), (0, 10), (5, 10)],
+}
+
+
+@pytest.mark.parametrize("profile", BORED.values(), ids=BORED)
+def test_a_bored_ball_of_two_arcs_is_one_ball_to_its_digits(profile):
+    piece = tt.Workpiece(profile=profile, density=700.0, unit="mm")
+    (ball,) = [zone for zone in piece.hull.zones if not zone.radius]
+    assert ball.tube == pytest.approx(0.02, rel=1e-12)
+    assert ball.height == pytest.approx(0.0, abs=1e-15)
+    cap = math.pi * (20.0 - EDGE) ** 2 * (40.0 + EDGE) / 3.0
+    bore = 25.0 * math.pi * (2.0 * EDGE if profile is BORED["through"] else EDGE + 10.0)
+    ends = 2.0 * cap if profile is BORED["through"] else cap
+    volume = 4.0 / 3.0 * math.pi * 8000.0 - bore - ends
+    assert piece.mass_properties.mass == pytest.approx(700e-9 * volume, rel=1e-5)
+
+
+def test_what_digits_allow_and_leave_open_is_remarked_on(tmp_path):
+    def remarks(profile, *options):
+        rows = [",".join(map(str, point)) for point in profile]
+        (tmp_path / "a.csv").write_text("\n".join(rows))
+        command = ["body", str(tmp_path / "a.csv"), "--density", "700", "--unit", "mm", "--json"]
+        done = CliRunner().invoke(app, [*command, "--no-runs", "--whole", *options])
+        return " ".join(json.loads(done.stdout)["remarks"])
+
+    assert "moved by up to 0.0001" in remarks(ROUNDED["five digits"])
+    assert "moved" not in remarks(ROUNDED["five digits"], "--tolerance", "0")
+    assert remarks(EXACT) == ""
+    coarse = remarks(bowl((20, 0, 20), (14, 14.3, 20), (14, -7)))
+    assert "beside the axis" in coarse
+
+
 @pytest.mark.parametrize("count", [12, 24, 60])
 def test_a_ball_has_no_eccentricity_of_rounding(count):
     """A body whose centre of mass is in the middle belongs to no group of tippe tops."""

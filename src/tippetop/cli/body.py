@@ -32,6 +32,11 @@ FILE_ENDINGS = {
 }
 """Accepted suffixes of files."""
 
+SURELY_MOVED, DOUBTFUL = 1e-9, 10.0
+"""Distance in sizes of the profile above which it is not rounding of floats; and in roundings of
+the profile's numbers up to which an arc's centre beside the axis may be due to them.
+"""
+
 SPIN = 155.0
 """Axial spin of a launch in a file that is written, rad/s: that of the report."""
 
@@ -159,14 +164,34 @@ def body(
 
 
 def _fit(workpiece: "tt.Workpiece") -> list[str]:
-    """Return a remark on the fit of the profile to points, if there was one."""
-    fit = workpiece.fit
-    if fit.edges == fit.stated and not fit.deviation:
-        return []
-    return [
-        f"{fit.edges} arcs and lines for the {fit.stated} edges of the profile, at most"
-        f" {1e3 * workpiece.deviation:.2g} mm from its points."
-    ]
+    """Return remarks on the fit of the profile to points, and on what its digits leave open."""
+    from tippetop.lathe.rounding import usual_rounding  # noqa: PLC0415 - slow to import
+    from tippetop.lathe.workpiece import UNITS  # noqa: PLC0415
+
+    fit, unit, remarks = workpiece.fit, 1e3 * UNITS[workpiece.unit], list[str]()
+    if fit.edges != fit.stated or fit.deviation:
+        remarks.append(
+            f"{fit.edges} arcs and lines for the {fit.stated} edges of the profile, at most"
+            f" {1e3 * workpiece.deviation:.2g} mm from its points."
+        )
+    else:
+        pairs = zip(fit.points, workpiece.profile, strict=True)
+        moved = max(math.dist(point[:2], stated[:2]) for point, stated in pairs)
+        if moved > SURELY_MOVED * workpiece.outline.size / UNITS[workpiece.unit]:
+            remarks.append(
+                f"Points of the profile are moved by up to {unit * moved:.2g} mm, as their digits"
+                " allow, so that arcs are centred on the axis (--tolerance 0 takes them as stated)."
+            )
+    digits = DOUBTFUL * usual_rounding(workpiece.profile) * unit
+    for edge in workpiece.outline.edges:
+        beside = 1e3 * abs(edge.center.real) if edge.turn else 0.0
+        if 1e3 * SURELY_MOVED * workpiece.outline.size < beside <= digits:
+            remarks.append(
+                f"An arc of radius {1e3 * abs(edge.radius):.4g} mm has its centre {beside:.2g} mm"
+                " beside the axis, which the rounding of its numbers may have made: it is taken as"
+                " stated, as a ring. Write them with more digits to have a ball."
+            )
+    return remarks
 
 
 def _summary(workpiece: "tt.Workpiece", whole: bool, runs: bool) -> dict[str, Any]:

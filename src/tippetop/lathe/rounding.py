@@ -6,6 +6,7 @@ import cmath
 import math
 from collections.abc import Callable, Sequence
 from decimal import Decimal
+from itertools import pairwise
 
 from tippetop.lathe.edges import Edge
 
@@ -87,22 +88,53 @@ def _around_axis(points: list[Point], rounding_at: RoundingAt) -> tuple[Point, .
         if radius:
             within = 2.0 * max(roundings[k - 1], roundings[k])
             circles[k] = _circle(places[k - 1], places[k], radius, within, circles[k - 1])
-    for k in reversed(range(1, len(points) - 1)):
-        # An arc that ends on the axis has the most exact centre of the arcs on its circle.
-        before, after = circles[k], circles[k + 1]
-        within = 4.0 * max(roundings[k - 1 : k + 2])
-        if before and after and _are_same(before, after, within) and places[k + 1].real == 0.0:
-            circles[k] = after
+    circles = _shared(circles, places, roundings)
     for k, place in enumerate(places):
         beside = [circle for circle in circles[k : k + 2] if circle]
         if beside:
             places[k] = _on_circles(place, beside, k in (0, len(points) - 1))
+    # A closed line ends where it began, to its digits.
+    if math.dist(points[0][:2], points[-1][:2]) <= roundings[0] + roundings[-1]:
+        places[0] = places[0] if circles[1] else places[-1]
+        places[-1] = places[0]
     moved = []
     for k, (point, place) in enumerate(zip(points, places, strict=True)):
         circle = circles[k]
         end = (math.copysign(circle[1], point[2]),) if circle else point[2:]
         moved.append((place.real, place.imag, *end))
     return tuple(moved)
+
+
+def _shared(
+    circles: list[tuple[complex, float] | None], places: list[complex], roundings: list[float]
+) -> list[tuple[complex, float] | None]:
+    """Return the circles of arcs; successive ones that are one to their digits are made one.
+
+    That is the circle of an arc that ends on the axis, or else of the finest numbers: its centre is
+    the most exact.
+    """
+    errors = [0.0] + [
+        0.0 if min(start.real, end.real) == 0.0 else max(roundings[arc : arc + 2])
+        for arc, (start, end) in enumerate(pairwise(places))
+    ]
+    shared = list(circles)
+    k = 1
+    while k < len(circles):
+        end = k + 1
+        while end < len(circles) and _are_one(circles, roundings, end):
+            end += 1
+        best = errors[k:end].index(min(errors[k:end]))
+        for arc in range(k, end):
+            shared[arc] = circles[k + best]
+        k = end
+    return shared
+
+
+def _are_one(circles: list[tuple[complex, float] | None], roundings: list[float], k: int) -> bool:
+    """Return whether an arc and the one before are on one circle, to their digits."""
+    before, after = circles[k - 1], circles[k]
+    within = 4.0 * max(roundings[k - 2 : k + 1])
+    return before is not None and after is not None and _are_same(before, after, within)
 
 
 def _circle(

@@ -125,7 +125,8 @@ class Workpiece(Part):
                     raise InvalidInput(
                         field,
                         Described("a line across another insert's"),
-                        "one beside or inside it",
+                        "one beside or inside it; a bore that goes on into another insert as two"
+                        " inserts, which meet where that begins",
                     )
         return self
 
