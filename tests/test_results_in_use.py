@@ -1,5 +1,6 @@
 """Results in use: drawn into a panel, as methods of datasets, written and read again."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -112,7 +113,8 @@ def test_tables_have_the_separators_and_headings_that_are_asked_for(tmp_path, na
 @pytest.mark.parametrize(
     ("name", "options", "field"),
     [
-        ("run.xlsx", {}, "path"),
+        ("run.ods", {}, "path"),
+        ("run.xlsx", {"decimal": ","}, "decimal"),
         ("run.csv", {"sep": ";;"}, "sep"),
         ("run.csv", {"sep": ",", "decimal": ","}, "sep"),
         ("run.csv", {"decimal": "'"}, "decimal"),
@@ -125,6 +127,18 @@ def test_tables_of_other_kinds_are_refused(tmp_path, name, options, field):
         tt.write_csv(run, tmp_path / name, **options)
     assert refusal.value.field == field
     assert not list(tmp_path.iterdir())
+
+
+def test_a_workbook_is_written_by_openpyxl(tmp_path, monkeypatch):
+    run = tt.simulate(tt.presets.report_problem(), 0.1, samples=5)
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "openpyxl", None)
+        with pytest.raises(tt.Unavailable, match="install openpyxl, or write"):
+            tt.write_csv(run, tmp_path / "run.xlsx")
+    assert not list(tmp_path.iterdir())
+    pytest.importorskip("openpyxl", reason="openpyxl, which no extra has, writes the workbook")
+    table = pd.read_excel(run.tippetop.write(tmp_path / "run.xlsx"))
+    assert table["tilt (rad)"].to_numpy() == pytest.approx(run["tilt"].values, rel=1e-15)
 
 
 def test_a_field_of_another_part_is_replaced_and_not_copied():

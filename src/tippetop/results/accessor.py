@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 WRITERS = {
     ".nc": "write_run",
     ".csv": "write_csv",
+    ".xlsx": "write_csv",
     ".parquet": "write_parquet",
     ".html": "write_html",
     ".glb": "write_glb",
@@ -65,7 +66,7 @@ class TippetopAccessor:
     def write(self, path: Path | str, overwrite: bool = False) -> Path:
         """Write the result in the format of the suffix, and return the path.
 
-        The suffix is .nc, .csv or .parquet, or for a run .html, .glb, .mp4 or .gif.
+        The suffix is .nc, .csv, .xlsx or .parquet, or for a run .html, .glb, .mp4 or .gif.
         """
         import tippetop as tt  # noqa: PLC0415
 
