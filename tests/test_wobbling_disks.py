@@ -157,7 +157,7 @@ def test_without_rolling_resistance_a_thin_disk_wobbles_on(friction: tt.Friction
     problem = FALLING.replace({"friction": friction, "rolling_resistance": 0.0})
     run = tt.simulate(problem, 5.0, samples=2)
     assert run.attrs["status"] == "completed"
-    assert 1e-3 < float(run["final_tilt"]) < 0.3
+    assert 1e-3 < float(run["final_tilt"]) < float(run["tilt"][0]) * (1.0 + 1e-14)
 
 
 def test_a_ring_whose_slip_ends_with_its_rate_sticks() -> None:

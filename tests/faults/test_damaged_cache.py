@@ -29,6 +29,11 @@ for degree in (1, 3):
 """
 
 
+@pytest.fixture(autouse=True)
+def cleared_for_every_folder(monkeypatch):
+    monkeypatch.setattr(sealed_folders, "NEW_BETWEEN_CLEARINGS", 1)
+
+
 def swing(folder):
     """Follow two motions in another process, which must be right and silent."""
     done = subprocess.run(

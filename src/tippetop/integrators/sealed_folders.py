@@ -9,6 +9,7 @@ import shutil
 import tempfile
 import zlib
 from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 from typing import TypeVar
 
@@ -24,10 +25,18 @@ VARIABLE = "TIPPETOP_CACHE"
 SEAL, CONTENT = "seal.json", "content.zlib"
 """The digests of all else in a folder, and what is in it where that is one file."""
 
-PREFIX, MOST, LARGEST = "code-", 1024, 2**27
-"""How the folders are called, and how many there are at most, and bytes in them, when one more is
-made: then those go that were not used for longest.
+PREFIX, MOST, LARGEST = "code-", 4096, 2**27
+"""How the folders are called, and how many there are at most, and bytes in them, when the cache is
+cleared: then those go that were not used for longest.
 """
+
+NEW_BETWEEN_CLEARINGS = 32
+"""How many folders a process makes from one clearing of the cache to the next: to look at
+thousands of folders takes longer than to compile a small motion.
+"""
+
+made_here = count()
+"""Counts the folders that this process makes."""
 
 SEALED = re.compile(rf"{PREFIX}[0-9a-f]{{32}}")
 """Names of folders that are whole."""
@@ -102,7 +111,8 @@ def _processor() -> tuple[str, ...]:
 def _made(folder: Path, use: Callable[[Path | None], Found]) -> Found:
     """Compile in a folder beside, which takes its name when it is whole."""
     folder.parent.mkdir(parents=True, exist_ok=True)
-    _clear(folder.parent)
+    if next(made_here) % NEW_BETWEEN_CLEARINGS == 0:
+        _clear(folder.parent)
     beside = Path(tempfile.mkdtemp(prefix=f"{folder.name}-{os.getpid()}-", dir=folder.parent))
     try:
         result = use(beside)

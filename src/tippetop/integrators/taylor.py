@@ -70,9 +70,6 @@ beyond which a guard does not fall there. What polynomials leave out is less, or
 FALL = 2
 """Results of the search in a guard: when it falls, and whether that is undecided."""
 
-EFFORT = 1
-"""How hard the compiler tries, of 3: more takes as long, and its code runs no faster."""
-
 CACHE_LINE = 64
 """Bytes that are loaded together."""
 
@@ -272,7 +269,7 @@ class SeriesExpansion:
     """
 
     def __init__(self, recorded: Recorded, order: int) -> None:
-        self._engine = loaded(series_source(recorded, order), EFFORT)
+        self._engine = loaded(series_source(recorded, order))
         self.address = self._engine.get_function_address("jet")
         self.expand: Callable[..., None] = ctypes.CFUNCTYPE(None, *[_PLACE] * 4)(self.address)
         self._room = room_size(recorded, order)
@@ -631,7 +628,7 @@ def _step_code(order: int, left_out: float) -> Any:
         largest=Measures._fields.index("largest"),
         clock=Measures._fields.index("time"),
     )
-    return loaded(llvm_source(functions, 1) + "".join(lines) + driver, EFFORT)
+    return loaded(llvm_source(functions, 1) + "".join(lines) + driver)
 
 
 def doubt_about(terms: Sequence[Scalar], looked: Sequence[Scalar]) -> list[Scalar]:
