@@ -56,8 +56,10 @@ def test_simulating_loads_neither_matplotlib_nor_the_laboratory():
 
 
 def test_the_usual_run_at_the_command_line_loads_only_what_it_needs():
+    """Where the extra `sweep` is not installed: where it is, xarray loads dask."""
     code = """
 import contextlib, io, sys
+sys.modules["dask"] = None
 from tippetop.cli.main import main
 sys.argv = ["tippetop", "simulate", "--duration", "0.1"]
 with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(SystemExit):

@@ -12,10 +12,6 @@ from tippetop.support.interrupts import INTERRUPTED, let_end
 GARBAGE = 50_000
 """Number of new objects between two garbage collections: imports make many objects and free few."""
 
-UNUSED = ("dask",)
-"""Packages that xarray loads if they are installed, and that only `sweep` uses."""
-
-
 PLAIN = {
     "\N{MINUS SIGN}": "-",
     "\N{EN DASH}": "-",
@@ -46,9 +42,6 @@ def main() -> None:
     let_end(at_first=True)
     _print_what_can_be_printed()
     gc.set_threshold(GARBAGE)
-    if sys.argv[1:2] != ["sweep"]:
-        for name in UNUSED:
-            sys.modules.setdefault(name, None)  # type: ignore[arg-type]  # as if it were not installed
     from tippetop.cli.commands import run  # noqa: PLC0415 - slow; Ctrl-C is heard meanwhile
 
     try:
