@@ -54,7 +54,7 @@ def test_there_are_forty_launches_over_every_law_and_ending() -> None:
 
 @pytest.mark.parametrize(
     "chosen",
-    [list(LAUNCHES)[::13], pytest.param(list(LAUNCHES), marks=pytest.mark.slow)],
+    [list(LAUNCHES)[::20], pytest.param(list(LAUNCHES), marks=pytest.mark.slow)],
     ids=["some", "all"],
 )
 def test_the_page_gives_the_same_account(chosen: list[str]) -> None:
@@ -135,7 +135,7 @@ def test_the_catalogues_have_the_same_texts() -> None:
 
 
 def test_every_clause_of_the_launches_has_a_text() -> None:
-    for name in LAUNCHES.keys() - SLOW:
+    for name in [name for name in LAUNCHES if name not in SLOW][::3]:
         account = describe(followed(name))
         assert "{" not in str(account)
         assert "nan" not in str(account), account

@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 from typer.testing import CliRunner
 
 import tippetop as tt
+from campaigns import among
 from tippetop.cli.commands import app
 
 RADIUS, CENTER, CUT = 0.02, 0.004, 1.7
@@ -131,11 +132,14 @@ def test_the_contact_passes_onto_the_edge_as_an_independent_integration_says():
 
 @pytest.mark.parametrize(
     "friction",
-    [
-        tt.ViscousFriction(mu=0.3),
-        tt.CoulombFriction(mu=0.3),
-        tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal"),
-    ],
+    among(
+        [
+            tt.CoulombFriction(mu=0.3),
+            tt.ViscousFriction(mu=0.3),
+            tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="ellipsoidal"),
+        ],
+        check=1,
+    ),
 )
 def test_what_is_conserved_on_ball_edge_and_stem(friction):
     problem = of(BALL, STEM, friction=friction, tilt=1.65, spin=40.0, tilt_rate=12.0)

@@ -45,16 +45,18 @@ FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 WITHOUT_DOCSTRING = {"MATERIALS", "presets"}
 
 
+SLOW = {"README.md", "docs/howto/sweep.md", "docs/howto/units.md", "tippetop.fit.fit_result"}
+"""Pages, and modules with examples, that take seconds."""
+
+
 def maybe(page):
     """A page, left out where it is a notebook: the build of the documentation runs that."""
     text = page.read_text(encoding="utf-8")
     notebook = "{code-cell}" in text and "NOTEBOOKS" not in os.environ
     reason = "a notebook: run by `make docs` and by `make doctest`"
-    return pytest.param(
-        page,
-        id=page.relative_to(ROOT).as_posix(),
-        marks=pytest.mark.skipif(notebook, reason=reason),
-    )
+    name = page.relative_to(ROOT).as_posix()
+    marks = [pytest.mark.skipif(notebook, reason=reason), *[pytest.mark.slow] * (name in SLOW)]
+    return pytest.param(page, id=name, marks=marks)
 
 
 @pytest.fixture(autouse=True)
@@ -69,7 +71,9 @@ def _elsewhere(tmp_path, monkeypatch):
         plt.close("all")
 
 
-@pytest.mark.parametrize("home", HOMES)
+@pytest.mark.parametrize(
+    "home", [pytest.param(home, marks=[pytest.mark.slow] * (home in SLOW)) for home in HOMES]
+)
 def test_the_examples_of_docstrings_are_true(home):
     found = doctest.testmod(importlib.import_module(home), optionflags=FLAGS)
     assert found.failed == 0

@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 import tippetop as tt
+from campaigns import among
 from launches import asked, in_javascript
 from test_dry_campaign import LAWS, ordinary
 from test_painleve_on_two import drawn
@@ -80,7 +81,7 @@ def test_what_cannot_be_found_is_said_in_words_of_the_motion(
     assert run.attrs["message"].endswith(f" {what} cannot be found: {why}.")
 
 
-@pytest.mark.parametrize("spin", [1e80, 1e150])
+@pytest.mark.parametrize("spin", among([1e150, 1e80], check=1))
 def test_a_flight_that_turns_too_often_is_followed_on_no_page_either(spin: float) -> None:
     problem = THROWN.replace({"launch.spin": spin})
     run = tt.simulate(problem, 0.5, samples=3)

@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-from campaigns import seeds
+from campaigns import among, seeds
 from children import ended, posix_only, started
 
 SAID = "tippetop: interrupted\n"
@@ -58,7 +58,7 @@ sys.meta_path.insert(0, Finder())
 
 
 @posix_only
-@pytest.mark.parametrize("lost", [False, True])
+@pytest.mark.parametrize("lost", among([False, True], check=1))
 def test_ctrl_c_of_which_an_import_makes_something_else_is_still_ctrl_c(tmp_path, lost):
     program = MASKED.format(lost=lost) + MAIN
     command = [sys.executable, "-c", program, "simulate", "--out", "run.nc"]

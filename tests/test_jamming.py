@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import tippetop as tt
+from campaigns import among
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.guards import LIFT_OFF
@@ -83,7 +84,7 @@ def on_springs(slip: float, stiffness: float, jams: float, eps: float = 1e-6) ->
     return np.asarray(ends[0][3:6]) / INERTIA
 
 
-@pytest.mark.parametrize("slip", [SLOW, FAST])
+@pytest.mark.parametrize("slip", among([SLOW, FAST], check=1))
 def test_a_contact_that_jams_is_struck_as_the_limit_of_elastic_ones_is(slip: float) -> None:
     run = tt.simulate(jamming(slip=slip), 2e-3 * slip / SLOW, samples=2)
     assert run["event_kind"].values.tolist() == ["impact", "stick"]

@@ -52,7 +52,7 @@ def losses(run: xr.Dataset) -> list[float]:
     return [float(run[f"energy_lost_{name}"]) for name in ("sliding", "drilling", "rolling")]
 
 
-@pytest.mark.parametrize("friction", LAWS.values(), ids=LAWS)
+@pytest.mark.parametrize("friction", among(list(LAWS.values()), 1), ids=lambda law: law.kind)
 def test_a_surface_that_never_touches_changes_nothing(friction: tt.Friction) -> None:
     tip = tt.Sphere(radius=0.2 * R, center=R)
     alone, both = (
@@ -246,7 +246,7 @@ SEEDS = {
 """Launches and how long they are followed."""
 
 
-@pytest.mark.parametrize(("seed", "duration"), SEEDS.values(), ids=SEEDS)
+@pytest.mark.parametrize(("seed", "duration"), among(list(SEEDS.values()), check=1))
 def test_losses_add_up_and_no_couple_is_more_than_the_resistance_can(
     seed: int, duration: float
 ) -> None:
@@ -280,7 +280,8 @@ def test_losses_add_up_and_no_couple_is_more_than_the_resistance_can(
         assert abs(turning_along(pair)) < 1e-11 * (G / R) ** 0.5
 
 
-@pytest.mark.parametrize(("seed", "duration"), among(list(SEEDS.values()), check=1))
+@pytest.mark.slow
+@pytest.mark.parametrize(("seed", "duration"), SEEDS.values(), ids=SEEDS)
 def test_dry_rolling_is_the_limit_of_smoothed_friction(seed: int, duration: float) -> None:
     """Where nothing sticks and no rolling stops, and two contacts that slip are all there is."""
     problem = resisted(seed)
@@ -353,6 +354,7 @@ def test_sweeps_find_what_runs_find() -> None:
     assert rested == [False, True]
 
 
+@pytest.mark.slow
 def test_rolling_may_begin_while_slip_on_two_contacts_ends() -> None:
     """Two balls on a stick, lying: what friction takes is what is lost, and in the end nothing
     moves.

@@ -52,7 +52,7 @@ MOTIONS: dict[str, dict[str, Any]] = {
 
 
 CASES = [(law, motion) for law in FRICTIONS for motion in MOTIONS]
-USUAL = {("coulomb", "along"), ("viscous", "turning"), ("ellipsoidal", "falling")}
+USUAL = {("coulomb", "along"), ("viscous", "turning"), ("viscous", "falling")}
 
 
 @pytest.mark.parametrize(

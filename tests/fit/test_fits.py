@@ -9,6 +9,7 @@ from scipy.optimize import least_squares
 from typer.testing import CliRunner
 
 import tippetop as tt
+from campaigns import among
 from tippetop.cli.commands import app
 from tippetop.fit.fit_result import search_of
 from tippetop.fit.model import Model
@@ -114,6 +115,7 @@ def test_a_profile_agrees_where_the_model_is_linear(run):
     assert fitted.profile("friction.mu") == pytest.approx(fitted.interval("friction.mu"), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_events_alone_give_friction():
     # At small friction mu t is the same for all mu: twice the friction turns over in half the time.
     slow, fast = TRUE.replace({"friction.mu": 0.02}), TRUE.replace({"friction.mu": 0.04})
@@ -143,12 +145,15 @@ def test_laws_are_told_apart_or_not(run):
 
 @pytest.mark.parametrize(
     "law",
-    [
-        tt.CoulombFriction(mu=0.3),
-        tt.ContensouFriction(mu=0.3, patch_radius=5e-4),
-        tt.RegularizedCoulombFriction(mu=0.3, eps=0.01),
-    ],
-    ids=["coulomb", "contensou", "regularized"],
+    among(
+        [
+            tt.CoulombFriction(mu=0.3),
+            tt.ContensouFriction(mu=0.3, patch_radius=5e-4),
+            tt.RegularizedCoulombFriction(mu=0.3, eps=0.01),
+        ],
+        check=1,
+    ),
+    ids=lambda law: law.kind,
 )
 def test_a_film_under_another_law_ends_as_a_fit(law):
     """Runs of the search may stick, turn over or end early: none of its numbers is not finite."""
@@ -178,6 +183,7 @@ def test_the_profile_of_revolutions_a_minute():
         assert low < fitted.values[name] < high
 
 
+@pytest.mark.slow
 def test_a_sharp_minimum_is_reached(monkeypatch):
     """The frequency of a disk that wobbles down grows without bound: a thousandth of a standard
     error of its rolling resistance changes the slopes of the last data.
@@ -228,6 +234,7 @@ def tilt_film():
 BOTH = ["friction.mu", "launch.spin"]
 
 
+@pytest.mark.slow
 def test_minima_of_other_turns_of_nutation_are_passed_over(tilt_film):
     true, film = tilt_film
     guess = true.replace({"friction.mu": 0.25, "launch.spin": 143.0})
@@ -493,8 +500,8 @@ def test_the_command_fits_a_file(tmp_path, run):
     tilt = np.degrees(run["tilt"].values) + np.random.default_rng(6).normal(0, 0.5, len(TIMES))
     rows = [f"{t:.4f};{d:.3f}".replace(".", ",") for t, d in zip(TIMES, tilt, strict=True)]
     data.write_text("\n".join(["t (s);tilt (deg)", *rows]))
-    problem.write_text(GUESSED.to_toml())
-    command = ["fit", str(data), str(problem), "--vary", "friction.mu,launch.spin", "--json"]
+    problem.write_text(TRUE.replace({"friction.mu": 0.27}).to_toml())
+    command = ["fit", str(data), str(problem), "--vary", "friction.mu", "--json"]
     answer = CliRunner().invoke(app, [*command, "--plot", str(drawn)], catch_exceptions=False)
     told = json.loads(answer.stdout)
     assert abs(told["values"]["friction.mu"] - 0.3) < 4 * told["errors"]["friction.mu"]

@@ -22,6 +22,8 @@ from tippetop.report.gallery import PLATES, Plate
 from tippetop.theory.resting_center import resting_center
 from tippetop.theory.stem import least_jellett_to_stand
 
+pytestmark = pytest.mark.slow  # its experiments take eight seconds
+
 NAMES = ("leine", "stepping", "stems", "egg", "rolling")
 
 

@@ -15,6 +15,7 @@ from sweep_cases import wait_for_a_task
 from typer.testing import CliRunner
 
 import tippetop as tt
+from campaigns import among
 from children import ended, posix_only, started
 from tippetop.cli import commands
 from tippetop.cli.sweep import sweep as command
@@ -336,11 +337,11 @@ if __name__ == "__main__":
 
 
 @posix_only
-@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("workers", among([1, 2], check=1))
 def test_ctrl_c_leaves_a_line_and_a_store_that_resumes(tmp_path, workers):
     script, out = tmp_path / "run.py", tmp_path / "a.zarr"
     script.write_text(INTERRUPTED)
-    options = ["--over", "launch.spin=1:250:120", "--over", "friction.mu=0.1:1:100", "--no-maps"]
+    options = ["--over", "launch.spin=1:250:60", "--over", "friction.mu=0.1:1:100", "--no-maps"]
     options += ["--duration", "1"]
     command = [sys.executable, script, *options, "--workers", str(workers), "--out", out]
     with started(command) as process:

@@ -45,6 +45,7 @@ def test_workers_of_another_version_are_refused():
 
 
 @posix_only
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 def test_a_dask_cluster_finds_the_same_though_a_worker_is_killed(small_tasks, monkeypatch):
     distributed = pytest.importorskip("distributed")
@@ -198,10 +199,11 @@ def cluster(tmp_path):
 
 
 @posix_only
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("lost", "pause", "sentence"),
     [
-        pytest.param("scheduler", 1.0, "was lost (CancelledError)", marks=pytest.mark.slow),
+        ("scheduler", 1.0, "was lost (CancelledError)"),
         ("worker", 0.0, "has had no workers for 2 s"),
     ],
 )

@@ -8,6 +8,7 @@ import xarray as xr
 from sweep_cases import lively, problem_of, stored, thrown, truth
 
 import tippetop as tt
+from campaigns import among
 from tippetop.problem.presets import report_problem
 from tippetop.results.samples import OF_INSTANTS, OF_SUMS
 from tippetop.run import simulate
@@ -63,11 +64,14 @@ def test_samples_of_thrown_and_bouncing_tops_are_those_of_single_runs():
 
 @pytest.mark.parametrize(
     ("friction", "rolling_resistance"),
-    [
-        (tt.CoulombFriction(mu=0.3), 0.0),
-        (tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="hertz"), 0.0),
-        (tt.ViscousFriction(mu=0.3), 1e-5),
-    ],
+    among(
+        [
+            (tt.CoulombFriction(mu=0.3), 0.0),
+            (tt.ContensouFriction(mu=0.3, patch_radius=5e-4, pressure="hertz"), 0.0),
+            (tt.ViscousFriction(mu=0.3), 1e-5),
+        ],
+        check=1,
+    ),
 )
 def test_samples_of_launches_that_are_followed_alone_or_change_branches(
     friction, rolling_resistance
