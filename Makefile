@@ -26,11 +26,11 @@ $(BUILT): $(shell find web src/tippetop -name node_modules -prune -o -name built
 PYTEST = $(BIN)/python -m pytest -n auto --dist worksteal
 
 test: $(VENV)/.installed-dev ## Run the tests
-	@echo "This takes about eight minutes on two processors that have nothing else to do."
+	@echo "This takes about six minutes on two processors that have nothing else to do."
 	$(PYTEST)
 
 test-all: $(VENV)/.installed-dev ## Run the tests, and a sample of every campaign
-	@echo "This takes about fourteen minutes on two processors that have nothing else to do."
+	@echo "This takes about twelve minutes on two processors that have nothing else to do."
 	$(PYTEST) -m "not (browser or campaign)"
 
 campaigns: $(VENV)/.installed-dev ## Run every campaign in the size that is claimed, and search at random
