@@ -14,7 +14,7 @@ from tippetop.mechanics.vectors import length
 from tippetop.results.catalogue import Fault, Outcome
 from tippetop.results.metrics import STATUSES, Ends, metrics, outcomes_of, settled_band
 from tippetop.results.monitor import STATUSES_OF_MOTION, Monitor, monitored_quantities
-from tippetop.results.settling import settled_tilts
+from tippetop.results.settling import settled_tilt_of_one, settled_tilts
 from tippetop.support.errors import Unavailable
 from tippetop.sweeps.cells import cells_of, spread
 from tippetop.sweeps.contents import OF_EVENTS, contents_of
@@ -22,7 +22,7 @@ from tippetop.sweeps.definition import Sweep
 from tippetop.sweeps.grid import Flat
 from tippetop.sweeps.lane_executor import Lanes, arrivals
 from tippetop.sweeps.lane_sums import LaneSums, swept_motion
-from tippetop.sweeps.launch_arrays import Launches
+from tippetop.sweeps.launch_arrays import Launches, single
 from tippetop.sweeps.listed_events import ListedEvents
 from tippetop.sweeps.single_launches import follow_each, needs_single_launches, note_failure
 from tippetop.sweeps.taylor_stepper import stepper
@@ -103,7 +103,7 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
             ends = lanes.run()
             judge(ends, some, sweep.tolerance)
             done = ends.status == STATUSES.index(Status.COMPLETED)
-            settled = settled_tilts(ends.state, some.state, some.top)
+            settled = settled_in_lanes(ends, some)
             ends.settled = np.where(done, settled, ends.settled)
             again = arrivals(lanes, settled_band(ends.settled))
             ends.arrived = np.where(np.isnan(again), ends.arrived, again)
@@ -116,6 +116,25 @@ def _followed(sweep: Sweep, numbers: Flat) -> dict[str, NDArray[np.generic]]:
         for name, numbers_found in values.items():
             variables[name][which] = numbers_found.astype(variables[name].dtype)
     return variables
+
+
+def settled_in_lanes(ends: Ends, launches: Launches) -> Array:
+    """Return the tilts near which launches stay for ever, rad, shape (n,), or nan.
+
+    Of a field, some launches may have parts that are zero: each is asked for its own.
+    """
+    if launches.kind.field is None:
+        return settled_tilts(ends.state, launches.state, launches.top)
+    tilts = [
+        settled_tilt_of_one(
+            STATUSES[status],
+            single(ends.state, i),
+            single(launches.state, i),
+            launches.automaton(i).top,
+        )
+        for i, status in enumerate(np.asarray(ends.status).tolist())
+    ]
+    return np.array(tilts)
 
 
 def judge(ends: Ends, launches: Launches, tolerance: float) -> None:
