@@ -8,6 +8,7 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 
 import tippetop as tt
+from planar_rim import time_to_tilt
 
 MASS, RADIUS, THICKNESS, GRAVITY = 0.05, 0.02, 0.005, 9.8
 MU = 0.2
@@ -179,51 +180,6 @@ HEIGHT = 0.05
 TALL = tt.Body(mass=0.1, shape=tt.Ring(radius=RADIUS, center=-HEIGHT), I1=1e-4, I3=2e-5)
 
 
-def time_of_tilt(mu: float, tilt: float) -> float:
-    """Return the time until a body that slides on the front of its rim has a tilt, in its plane."""
-
-    def rates(_: float, y: list[float]) -> list[float]:
-        theta, rate = y
-        across = RADIUS * math.cos(theta) - HEIGHT * math.sin(theta)
-        height = RADIUS * math.sin(theta) + HEIGHT * math.cos(theta)
-        arm = mu * height - across
-        # N = m (g + across theta'' - height theta'^2), and I1 theta'' = N arm.
-        pressing = TALL.mass * (GRAVITY - height * rate**2)
-        return [rate, pressing * arm / (TALL.I1 - TALL.mass * across * arm)]
-
-    def reached(_: float, y: list[float]) -> float:
-        return y[0] - tilt
-
-    reached.terminal = True
-    options = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "events": reached}
-    return float(solve_ivp(rates, (0.0, 5.0), [0.0, 0.0], **options).t_events[0][0])
-
-
-def time_to_turn(slope: float, rate: float, tilt: float, mu: float = math.inf) -> float:
-    """Return the time until `TALL`, which leans down a slope over its rim with a rate at first, has
-    a tilt: it turns about the rim that sticks, or slides on it at the speed at which it starts.
-    """
-    east, down = GRAVITY * math.sin(slope), GRAVITY * math.cos(slope)
-
-    def rates(_: float, y: list[float]) -> list[float]:
-        theta, speed = y
-        across = RADIUS * math.cos(theta) - HEIGHT * math.sin(theta)
-        height = RADIUS * math.sin(theta) + HEIGHT * math.cos(theta)
-        if math.isinf(mu):
-            about_rim = TALL.I1 + TALL.mass * (RADIUS**2 + HEIGHT**2)
-            return [speed, TALL.mass * (height * east - across * down) / about_rim]
-        arm = mu * height - across
-        pressing = TALL.mass * (down - height * speed**2)
-        return [speed, pressing * arm / (TALL.I1 - TALL.mass * across * arm)]
-
-    def reached(_: float, y: list[float]) -> float:
-        return y[0] - tilt
-
-    reached.terminal = True
-    options = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "events": reached}
-    return float(solve_ivp(rates, (0.0, 5.0), [0.0, rate], **options).t_events[0][0])
-
-
 STEEP = math.atan(RADIUS / HEIGHT) + 0.05
 """A slope on which no force in the face of `TALL` holds it."""
 
@@ -238,7 +194,7 @@ def test_a_body_at_rest_tips_down_a_steep_slope(mu: float, slope: float, sticks:
     run = tilted(problem, 0.1)
     assert run["event_kind"].values[0] == "tips over its rim"
     assert ("stick" in run["event_kind"].values) == sticks
-    expected = time_to_turn(slope, 0.0, 0.1, math.inf if sticks else mu)
+    expected = time_to_tilt(TALL, 0.1, mu=math.inf if sticks else mu, gravity=GRAVITY, slope=slope)
     assert float(run["end_time"]) == pytest.approx(expected, rel=1e-9)
     assert float(run["energy_error"]) < 1e-13
 
@@ -268,7 +224,7 @@ def test_a_body_launched_flat_with_a_rate_of_tilt_rocks(rate: float, azimuth: fl
         problem, 3.0, samples=21, dense=True, until=lambda state: state.tilt - reach
     )
     assert run["event_kind"].values[0] == "tips over its rim"
-    expected = time_to_turn(0.0, abs(rate), reach)
+    expected = time_to_tilt(TALL, reach, rate=abs(rate), gravity=GRAVITY)
     assert float(run["end_time"]) == pytest.approx(expected, rel=1e-10)
     lean = float(solution(0.5 * expected).azimuth) - azimuth
     assert math.cos(lean) == pytest.approx(math.copysign(1.0, rate), abs=1e-12)
@@ -318,7 +274,9 @@ def test_a_tall_body_tips_over_the_front_of_its_rim(mu: float) -> None:
     run = tilted(launched(3.0, 0.0, TALL, friction=tt.CoulombFriction(mu=mu)), 0.5)
     assert run.attrs["status"] == "stopped"
     assert run["event_kind"].values[0] == "tips over its rim"
-    assert float(run["end_time"]) == pytest.approx(time_of_tilt(mu, 0.5), rel=1e-11)
+    assert float(run["end_time"]) == pytest.approx(
+        time_to_tilt(TALL, 0.5, mu=mu, gravity=GRAVITY), rel=1e-11
+    )
     assert float(run["energy_error"]) < 1e-14
     lean = math.remainder(float(run["azimuth"][-1]) - 0.4, 2 * math.pi)
     assert abs(lean) < 1e-9
@@ -452,6 +410,24 @@ def test_a_body_whose_rim_friction_jams_is_struck_and_turns_about_it(mu: float) 
     assert float(run["event_impulse"][1]) == pytest.approx(impulse, rel=1e-12)
     assert float(run["event_energy_lost"][1]) == pytest.approx(lost, rel=1e-12)
     assert float(run["energy_error"]) < 1e-12
+
+
+@pytest.mark.parametrize("below", [1e-4, 1e-6])
+def test_a_rim_that_friction_nearly_jams_turns_as_one_that_is_struck(below: float) -> None:
+    """Below mu = (I1/(m a1) + a1)/h the normal force is as large as 1 / below: slip ends in so
+    short a time that the weight does nothing meanwhile.
+    """
+    speed, half, radius = 0.5, 0.02, 0.01
+    body, start = peg(half), tt.Launch(tilt=0.0, spin=0.0, slip=(speed, 0.0))
+    jams = (body.I1 / (body.mass * radius) + radius) / half
+    friction = tt.CoulombFriction(mu=jams * (1.0 - below))
+    problem = tt.Problem(body=body, friction=friction, launch=start)
+    run, solution = tt.simulate(problem, 1e-4, samples=2, dense=True)
+    assert run["event_kind"].values.tolist() == ["tips over its rim", "stick"]
+    rate = body.mass * half * speed / (body.I1 + body.mass * (half**2 + radius**2))
+    sticks = float(run["event_time"][1])
+    assert sticks < 3.0 * below * speed / GRAVITY
+    assert float(solution(sticks).tilt_rate) == pytest.approx(rate, rel=10 * below)
 
 
 @pytest.mark.parametrize(

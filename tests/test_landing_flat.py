@@ -1,13 +1,12 @@
 """Bodies that land flat: the impact of a face, the rim it may tip over, and rocking."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 import tippetop as tt
+from planar_rim import time_to_tilt
 from tippetop.contact.face_impact import face_impact
 from tippetop.mechanics.face_motion import law_of_face
 from tippetop.mechanics.invariants import energy
@@ -122,26 +121,6 @@ HEIGHT = 0.05
 TALL = tt.Body(mass=0.1, shape=tt.Ring(radius=0.02, center=-HEIGHT), I1=1e-4, I3=2e-5)
 
 
-def time_to_tilt(mu: float, rate: float, tilt: float) -> float:
-    """Return the time until `TALL`, which slides on the front of its rim, has a tilt, from none."""
-    radius = 0.02
-
-    def rates(_: float, y: Sequence[float]) -> list[float]:
-        theta, speed = y
-        across = radius * math.cos(theta) - HEIGHT * math.sin(theta)
-        height = radius * math.sin(theta) + HEIGHT * math.cos(theta)
-        arm = mu * height - across
-        pressing = TALL.mass * (GRAVITY - height * speed**2)
-        return [speed, pressing * arm / (TALL.I1 - TALL.mass * across * arm)]
-
-    def reached(_: float, y: Sequence[float]) -> float:
-        return y[0] - tilt
-
-    reached.terminal = True
-    options = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "events": reached}
-    return float(solve_ivp(rates, (0.0, 5.0), [0.0, rate], **options).t_events[0][0])
-
-
 @pytest.mark.parametrize(("mu", "tips"), [(0.39, False), (0.41, True), (0.6, True)])
 def test_a_tall_body_that_lands_with_slip_tips_over_its_rim(mu: float, tips: bool) -> None:
     """At mu h > a1: the impulse P acts at the front of the rim, and v_n = a1 omega after it."""
@@ -156,7 +135,7 @@ def test_a_tall_body_that_lands_with_slip_tips_over_its_rim(mu: float, tips: boo
     arm = mu * HEIGHT - radius
     impulse = GRAVITY * fall / (1 / TALL.mass - radius * arm / TALL.I1)
     assert float(run["event_impulse"][1]) == pytest.approx(impulse, rel=1e-12)
-    expected = fall + time_to_tilt(mu, arm * impulse / TALL.I1, 0.5)
+    expected = fall + time_to_tilt(TALL, 0.5, mu=mu, rate=arm * impulse / TALL.I1, gravity=GRAVITY)
     assert run.attrs["status"] == "stopped"
     assert float(run["end_time"]) == pytest.approx(expected, rel=1e-10)
     assert math.remainder(float(run["azimuth"][-1]), 2 * math.pi) == pytest.approx(0.0, abs=1e-9)

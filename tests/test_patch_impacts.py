@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+import tippetop as tt
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.impact import impact
 from tippetop.integrators import make_integrator
@@ -171,3 +172,21 @@ def test_a_touchdown_is_the_impact():
         automaton = Automaton(top, "fly", restitution)
         following = automaton.touchdown(top, 1.0, state)
         assert following.events[1].impulse == impact(state, restitution, top).impulse
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.3])
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_a_patch_that_does_not_drill_strikes_as_a_point_does(tilt, restitution):
+    """In a plane Hertz's patch has Coulomb's friction, mu N, and slip ends without drilling."""
+    launch = tt.Launch(tilt=tilt, spin=0.0, gap=0.02, velocity=(0.3, 0.0, 0.0))
+    patch = tt.ContensouFriction(mu=0.3, patch_radius=1e-3, pressure="hertz")
+    contact = tt.Contact(restitution=restitution)
+    events = []
+    for friction in (patch, tt.CoulombFriction(mu=0.3)):
+        problem = tt.Problem(
+            body=tt.presets.body("report"), friction=friction, launch=launch, contact=contact
+        )
+        run = tt.simulate(problem, 0.07, samples=2)
+        assert run.attrs["status"] == "completed"
+        events.append([float(run[name][1]) for name in ("event_impulse", "event_energy_lost")])
+    assert events[0] == pytest.approx(events[1], rel=1e-11)

@@ -566,9 +566,16 @@ class ImpactProcess:
                 raise Unsolved("an impact does not come to its end")
             cause, *contact = arc.guard.split(NUMBER_SIGN)
             number = int(contact[0]) if contact else BOTH
+            if cause == BRANCH and self._only_slips(moved, number):
+                cause = ENDS
             if cause != BRANCH:
                 return ImpactPhase(self._landed(moved, status, cause, number), cause, number, steps)
             tops[number] = on_other_branch(tops[number])
+
+    def _only_slips(self, impulse: Impulse, number: int) -> bool:
+        """Return whether a patch does not drill: where the branch of slip ends, slip has ended."""
+        drilling = slips_at(self.body, self.body.velocities(impulse))[number][2]
+        return bool(abs(drilling) <= least_slip(self.body))
 
     def _landed(self, impulse: Impulse, status: StruckStatus, cause: str, number: int) -> Impulse:
         """Return the impulse where slip, or rolling, has ended, or what held it has given way."""

@@ -25,7 +25,7 @@ TILTED = "tilted"
 
 UNFOLLOWED = "the first moments of tipping over the rim cannot be followed"
 
-LONGEST_STEP, HALVINGS = 0.2, 20
+LONGEST_STEP, HALVINGS = 0.2, 32
 """Length of the first step that is tried, in natural units of time, and how often it is halved."""
 
 PART_OF_RISE = 0.5
@@ -164,11 +164,10 @@ class TipOnset(Mode):
                 ]
             )
             largest = max([1.0, *[abs(each[STAGES - 1]) for each in points]])
-            if moved <= UNMOVED * largest and max(map(abs, changes)) <= UNRESOLVED:
-                legendre = [coefficients(each) for each in rates]
-                largest = max([1.0, *[abs(each[0]) for each in legendre]])
-                tail = max([abs(each[STAGES - 1]) for each in legendre])
-                is_resolved = tail <= largest * max(UNRESOLVED, UNMOVED / length)
+            fastest = max([1.0, *[abs(each[0]) for each in rates]])
+            if moved <= UNMOVED * largest * fastest and max(map(abs, changes)) <= UNRESOLVED:
+                tail = max([abs(coefficients(each)[STAGES - 1]) for each in rates])
+                is_resolved = tail <= fastest * max(UNRESOLVED, UNMOVED * fastest, UNMOVED / length)
                 return rates if is_resolved and self._lasts(points) else None
         return None
 
