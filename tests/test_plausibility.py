@@ -56,6 +56,10 @@ def test_no_preset_is_implausible(name):
         ({"body.I1": 1.9, "body.I3": 2.0}, "I3 = 2 kg m^2 is above m r^2 = 7.28e-06 kg m^2, r ="),
         ({"body.I1": 7e-6}, "I1 + I3/2 = 8.6e-06 kg m^2 is above m r^2 = 7.28e-06 kg m^2, r ="),
         ({"body.I1": 2e-9, "body.I3": 2e-9}, "I3 = 2e-09 kg m^2 is less than a thousandth of"),
+        (
+            {"launch.tilt": 0.0, "launch.precession": 5.0},
+            "a precession of 5 rad/s at launch does nothing, as the axis is vertical",
+        ),
         ({"body.mass": 20.0}, "the mass is 20 kg; most tops have 0.1 g to 5 kg"),
         ({"body.mass": 5e-5}, "the mass is 0.05 g; most tops have 0.1 g to 5 kg"),
         ({"body.shape.radius": 0.4}, "the body is 800 mm across and 800 mm high"),

@@ -22,6 +22,10 @@ SENTENCES = {
     ),
     "tilt": "the tilt at launch is {value}, above pi/2: the axis points down",
     "spin": "the spin at launch is {value}, beyond 10000 rad/s",
+    "precession": (
+        "a precession of {value} at launch does nothing, as the axis is vertical: the spin is all"
+        " of the rotation about it"
+    ),
     "heavy": "the centre of mass is {height} above the ball's centre: it does not turn over",
     "light": "a mass of {value} in a volume of {volume} floats on air",
 }

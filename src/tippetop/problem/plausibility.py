@@ -140,6 +140,8 @@ def checks(problem: Problem, outside: Outside) -> list[Check]:
     rows.append(("patch", patch > WIDEST_PATCH * across, wide))
     rows.append(("tilt", tilt > HALF_TURN, (("value", tilt, "rad"),)))
     rows.append(("spin", abs(spin) > FASTEST, (("value", spin, "rad/s"),)))
+    along_axis = (launch.precession != 0.0) & ((tilt == 0.0) | (tilt == math.pi))
+    rows.append(("precession", along_axis, (("value", launch.precession, "rad/s"),)))
     heavy = (outside.top_heaviness > 0.0) & (tilt <= HALF_TURN)
     rows.append(("heavy", heavy, (("height", outside.top_heaviness, "m"),)))
     # The volume of a spheroid; a cylinder has 1.5 times as much.
