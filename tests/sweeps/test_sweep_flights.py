@@ -21,6 +21,7 @@ from tippetop.mechanics.motion import along_table, on_table, sliding_contact
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top, natural_state, natural_units
+from tippetop.sweeps import polynomial_arcs
 from tippetop.sweeps.axis_extremes import DOWN, UP, TipMotion
 from tippetop.sweeps.flight_steps import GIVEN, LEFT, VANISHING, WANTED, flight_steps
 from tippetop.sweeps.flights import fly_all, look_closer
@@ -150,6 +151,28 @@ def test_steps_of_flights_are_what_a_closer_look_finds_and_rarely_need_it(surfac
         (found.ceiling, -tip.least[UP]),
     ):
         np.testing.assert_allclose(mine[sure], theirs[sure], rtol=1e-11, atol=1e-14)
+
+
+def test_slow_impacts_of_tops_that_slip_fast_need_no_closer_look(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The normal impulse is then a small part of what the contact point's velocity would give."""
+    top = Top.of(1.0, 0.45, 0.38, SphereSurface(1.0, 0.3), ViscousLaw(0.3), 1.0)
+    sinking = np.geomspace(1e-4, 1e-2, 20)
+    resting = on_table(
+        along_table(State((0.6, 0.0, 0.8), (1.0, 0.5, 3.0), (1.0, 0.5, 0.0), 0.0)), top
+    )
+    states = many(resting, len(sinking))
+    u, v, w = states.velocity
+    tops = top.kind.top(tuple(np.full(len(sinking), number) for number in top.numbers))
+    monkeypatch.setattr(polynomial_arcs, "Polynomials", None)
+    after = collide(states._replace(velocity=(u, v, w - sinking)), tops, np.full(len(sinking), 0.5))
+    assert after.struck.all()
+    for number, speed in enumerate(sinking):
+        x, y, z = resting.velocity
+        one, _ = collision(resting._replace(velocity=(x, y, z - speed)), 0.5, top)
+        ours = [row[number] for row in np.broadcast_arrays(*after.state.pack())[:9]]
+        assert ours == pytest.approx(one.state.pack()[:9], rel=1e-13, abs=1e-13)
 
 
 def test_impacts_are_rarely_left_out():

@@ -42,6 +42,11 @@ MOST_PIECES = 50
 LONGEST = 10.0
 """Longest piece, in units of the momentum of the contact point's velocity."""
 
+PAST_FULL = 1.25
+"""Longest piece of restitution over the normal impulse that is left to its end, so that the end
+lies within. In a piece much longer the end is so near its start that it takes the slower search.
+"""
+
 TINY = 1e-150
 """Added to a step that may be zero."""
 
@@ -107,6 +112,9 @@ class ImpactsUnderWay:
                 self.impulse[:, work], self.numbers[:, work]
             )
             longest = LONGEST * self.impulse[-1, work]
+            if restores:
+                impulse_left = self.numbers[FULL, work] - self.impulse[FIRST, work]
+                longest = np.minimum(longest, PAST_FULL * impulse_left)
             course = arcs(jet, np.zeros(len(work)), longest, pauses[:, work])
             course.look_closer(jet, pauses[:, work])
             self.impulse[:, work] = course.after
