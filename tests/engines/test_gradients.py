@@ -59,13 +59,28 @@ def test_the_page_says_what_is_stored():
     assert min(errors["peg", "launch.tilt", "stiff", stepwise, step] for step in STEPS) > 100.0
 
 
+def test_the_page_says_what_newton_gives():
+    rows = [one for one in gradients.LAUNCH_GRADIENTS.stored().rows if one.program == "Newton"]
+    errors = {
+        (one.case, one.parameter, one.setting, one.method, one.step): one.error for one in rows
+    }
+    by_runs, backwards = "differences of runs", "reverse mode of Warp"
+    stiff, soft = ("coulomb-roll", "launch.spin", "stiff springs"), ("coulomb-roll", "launch.spin")
+    for step in STEPS:
+        assert errors[*stiff, backwards, step] == pytest.approx(
+            errors[*stiff, by_runs, step], rel=0.05
+        )
+    assert errors[*stiff, backwards, STEPS[-1]] < 0.05 < errors[*stiff, backwards, STEPS[0]]
+    assert max(errors[*soft, "springs", backwards, step] for step in STEPS) > 1e6
+
+
 @pytest.mark.slow
 def test_steps_carry_a_change_as_runs_do_in_mujoco():
     pytest.importorskip("mujoco", reason="MuJoCo is not installed")
     case, made = case_of("peg"), adapter("mujoco")
     (stiff,) = (one for one in made.settings if one.name == "stiff")
     launch = gradients.MuJoCoLaunch(case, 2e-3, stiff)
-    differed = launch.differed("launch.spin")
+    differed = gradients._by_runs("mujoco", case, 2e-3, stiff, gradients.PART, "launch.spin")
     carried = launch.carried(launch.change("launch.spin"), 1e-8)
     assert carried == pytest.approx(differed, abs=1e-3 * np.abs(differed).max())
 

@@ -5,12 +5,13 @@ are installed and prints it; with ``--write`` it stores them, which the page abo
 
 A state that is judged (`reference.judged_state`) is differentiated by a number of the launch.
 MuJoCo differs each step by all of its state (`mjd_transitionFD`); the product of these matrices
-carries the change of the launch to the end. MJX differentiates its steps by JAX. Beside them stands
-what the same program gives where whole runs are differed: a gradient may be true to its program, or
-to the problem, or to neither.
+carries the change of the launch to the end. MJX differentiates its steps by JAX, Newton by Warp.
+Beside them stands what the same program gives where whole runs are differed: a gradient may be true
+to its program, or to the problem, or to neither.
 """
 
 import functools
+import itertools
 import math
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -21,7 +22,7 @@ from numpy.typing import NDArray
 
 import tippetop as tt
 from tippetop.engines.adapters import adapter
-from tippetop.engines.adapters.base import Setting
+from tippetop.engines.adapters.base import Setting, axis_of, settings_of
 from tippetop.engines.bodies import launch_state
 from tippetop.engines.cases import Case
 from tippetop.engines.comparison import STEPS
@@ -42,6 +43,9 @@ PARAMETERS = ("launch.spin", "launch.tilt")
 
 PART = 1e-5
 """Change of a number of the launch in differences of whole runs, relative."""
+
+PART_IN_SINGLE_PRECISION = 1e-3
+"""The same in a program of single precision, whose rounding a smaller change would show."""
 
 PERTURBATIONS = (1e-6, 1e-8)
 """Changes of a state in `mjd_transitionFD`: that of MuJoCo's examples, and a smaller one. A contact
@@ -75,6 +79,29 @@ def exact_gradient(case: Case, parameter: str) -> Array:
     return judged_state(case, last["axis"].values, last["angular_velocity"].values)
 
 
+def steps_of(case: Case, step: float) -> tuple[int, float]:
+    """Return how many steps of about a length lead to the judged state, and their length, s."""
+    until = float(case.times[case.judged - 1])
+    count = math.ceil(until / step * (1.0 - 1e-9))
+    return count, until / count
+
+
+def _by_runs(
+    name: str, case: Case, step: float, setting: Setting, part: float, parameter: str
+) -> Array:
+    """Return the derivative of the judged state in a program by differences of whole runs."""
+    count, length = steps_of(case, step)
+    value, ends = case.problem.get(parameter), []
+    for sign in (1.0, -1.0):
+        problem = case.problem.replace({parameter: value * (1.0 + sign * part)})
+        run = adapter(name).start(case._replace(problem=problem), length, setting)
+        run.advance(count)
+        state = run.read()
+        ends.append(judged_state(case, state.axis, state.omega))
+    slope: Array = (ends[0] - ends[1]) / (2.0 * part * value)
+    return slope
+
+
 def _error(gradient: Array, exact: Array) -> float:
     """Return the largest difference over the largest component; nan without a number."""
     error = float(np.abs(gradient - exact).max() / np.abs(exact).max())
@@ -93,15 +120,9 @@ class MuJoCoLaunch:
         except ImportError:
             raise Unavailable("MuJoCo is not installed: pip install 'tippetop[engines]'") from None
         self.mujoco, self.case = mujoco, case
-        until = float(case.times[case.judged - 1])
-        self.count = math.ceil(until / step * (1.0 - 1e-9))
-        self.step, self.setting = until / self.count, setting
-        stepper: Any = adapter("mujoco").start(case, self.step, setting)
+        self.count, length = steps_of(case, step)
+        stepper: Any = adapter("mujoco").start(case, length, setting)
         self.model, self.data = stepper.model, stepper.data
-
-    def run_of(self, problem: tt.Problem) -> Any:
-        """Return a run of a problem whose launch is another."""
-        return adapter("mujoco").start(self.case._replace(problem=problem), self.step, self.setting)
 
     def change(self, parameter: str) -> Array:
         """Return the change of MuJoCo's state at launch, by a number of the launch."""
@@ -144,17 +165,6 @@ class MuJoCoLaunch:
         omega = turn @ (np.cross(turned, motion[3:6]) + spun)
         return judged_state(self.case, axis, omega)
 
-    def differed(self, parameter: str) -> Array:
-        """Return the derivative of the judged state by differences of whole runs."""
-        value, ends = self.case.problem.get(parameter), []
-        for sign in (1.0, -1.0):
-            run = self.run_of(self.case.problem.replace({parameter: value * (1.0 + sign * PART)}))
-            run.advance(self.count)
-            state = run.read()
-            ends.append(judged_state(self.case, state.axis, state.omega))
-        slope: Array = (ends[0] - ends[1]) / (2.0 * PART * value)
-        return slope
-
 
 def _mujoco(case: Case, step: float) -> Iterator[tuple[str, str, Callable[[str], Array]]]:
     """Yield method, setting and function of a parameter for MuJoCo."""
@@ -162,8 +172,8 @@ def _mujoco(case: Case, step: float) -> Iterator[tuple[str, str, Callable[[str],
     for setting in made.settings:
         if made.refusal(case, setting):
             continue
-        launch = MuJoCoLaunch(case, step, setting)
-        yield "differences of runs", setting.name, launch.differed
+        by_runs = functools.partial(_by_runs, "mujoco", case, step, setting, PART)
+        yield "differences of runs", setting.name, by_runs
         if setting.options.get("integrator") == "RK4":
             continue  # mjd_transitionFD refuses it.
         for perturbation in PERTURBATIONS:
@@ -244,16 +254,97 @@ def _following() -> Any:
     return jax.jit(follow)
 
 
+# Newton
+
+
+def _newton(case: Case, step: float) -> Iterator[tuple[str, str, Callable[[str], Array]]]:
+    """Yield method, setting and function of a parameter for Newton.
+
+    By its documentation, of the solvers here SolverSemiImplicit alone is differentiable.
+    """
+    made = adapter("newton")
+    for setting in settings_of(made, case):
+        by_runs = functools.partial(
+            _by_runs, "newton", case, step, setting, PART_IN_SINGLE_PRECISION
+        )
+        yield "differences of runs", setting.name, by_runs
+        if setting.options["solver"] == "SemiImplicit":
+            yield "reverse mode of Warp", setting.name, NewtonTape(case, step, setting).carried
+
+
+class NewtonTape:
+    """The steps of a case in Newton, recorded to be followed backwards."""
+
+    def __init__(self, case: Case, step: float, setting: Setting) -> None:
+        from tippetop.engines.adapters.newton import NewtonWorld  # noqa: PLC0415 - optional
+
+        self.case = case
+        count, length = steps_of(case, step)
+        world = NewtonWorld(case, length, setting.options, requires_grad=True)
+        self.warp, self.states = world.warp, [world.state() for _ in range(count + 1)]
+        self.tape = self.warp.Tape()
+        with self.tape:
+            for before, after in itertools.pairwise(self.states):
+                # Steps that shared their contacts would be followed back with those of the last.
+                world.follow(before, after, world.pipeline.contacts())
+
+    def _launch(self, parameter: str, sign: float) -> Array:
+        """Return Newton's numbers of place and motion at a launch beside that of the case."""
+        value = self.case.problem.get(parameter) * (1.0 + sign * PART)
+        state = launch_state(self.case.problem.replace({parameter: value}))
+        w, x, y, z = state.quaternion
+        return np.array([*state.position, x, y, z, w, *state.velocity, *state.omega])
+
+    @functools.cached_property
+    def matrix(self) -> Array:
+        """Derivatives of orientation and angular velocity at the end by the numbers at launch."""
+        first, last = self.states[0], self.states[-1]
+        rows = []
+        for number in (*range(3, 7), *range(10, 13)):
+            seed = np.zeros(13, np.float32)
+            seed[number] = 1.0
+            self.tape.zero()
+            self.tape.backward(
+                grads={
+                    last.body_q: self._array(seed[None, :7], last.body_q),
+                    last.body_qd: self._array(seed[None, 7:], last.body_qd),
+                }
+            )
+            rows.append([*first.body_q.grad.numpy()[0], *first.body_qd.grad.numpy()[0]])
+        return np.array(rows)
+
+    def _array(self, values: Any, alike: Any) -> Any:
+        return self.warp.array(values, dtype=alike.dtype, device=alike.device)
+
+    def carried(self, parameter: str) -> Array:
+        """Return the derivative of the judged state by a number of the launch."""
+        apart = 2.0 * PART * self.case.problem.get(parameter)
+        change = (self._launch(parameter, 1.0) - self._launch(parameter, -1.0)) / apart
+        turned, spun = np.split(self.matrix @ change, [4])
+        x, y, z, w = self.states[-1].body_q.numpy()[0].astype(float)[3:]
+        quaternion = np.array([w, x, y, z])
+        ahead, behind = (
+            axis_of(quaternion + sign * PART * np.roll(turned, 1)) for sign in (1.0, -1.0)
+        )
+        return judged_state(self.case, (ahead - behind) / (2.0 * PART), spun)
+
+
 # What is measured and stored
 
 PROGRAMS: Mapping[str, Callable[[Case, float], Iterator[tuple[str, str, Any]]]] = {
     "MuJoCo": _mujoco,
     "MJX": _mjx,
+    "Newton": _newton,
 }
 """How programs give derivatives of a case at a step."""
 
-CASES_OF = {"MuJoCo": DIFFERENTIATED, "MJX": ("coulomb-roll", "slope")}
-"""Cases that are measured: MJX is compiled for a minute or more for each setting."""
+CASES_OF = {
+    "MuJoCo": DIFFERENTIATED,
+    "MJX": ("coulomb-roll", "slope"),
+    "Newton": ("coulomb-roll", "slope"),
+}
+"""Cases that are measured: MJX is compiled for a minute or more for each setting, and Newton takes
+as long for a thousand steps forth and back."""
 
 
 def measured(program: str) -> Iterator[LaunchGradient]:
@@ -273,7 +364,7 @@ def measured(program: str) -> Iterator[LaunchGradient]:
 
 def _line(row: LaunchGradient) -> str:
     return (
-        f"{row.case:<14}{row.parameter:<13}{1e3 * row.step:>6g} ms  {row.setting:<11}"
+        f"{row.case:<14}{row.parameter:<13}{1e3 * row.step:>6g} ms  {row.setting:<16}"
         f"{row.method:<30}{row.error:.2g}"
     )
 
@@ -282,7 +373,7 @@ LAUNCH_GRADIENTS = Measurements(
     about="Errors of derivatives by the launch in the programs that are installed.",
     file=GRADIENTS,
     row=LaunchGradient,
-    packages={"MuJoCo": "mujoco", "MJX": "mujoco-mjx"},
+    packages={"MuJoCo": "mujoco", "MJX": "mujoco-mjx", "Newton": "newton"},
     measure=measured,
     program_of=lambda row: row.program,
     line=_line,
