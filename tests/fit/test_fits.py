@@ -14,7 +14,7 @@ from tippetop.cli.commands import app
 from tippetop.fit.fit_result import search_of
 from tippetop.fit.model import Model
 from tippetop.fit.residual_statistics import are_correlated, correlation_time
-from tippetop.fit.search import Minimum, Search
+from tippetop.fit.search import Minimum, Region, Search, apart
 from tippetop.fit.template_bank import SPACING, lattice, phase_metric
 
 TRUE = tt.presets.report_problem(spin=155.0)
@@ -122,6 +122,13 @@ def test_events_alone_give_friction():
     seen = float(tt.simulate(slow, 100.0, samples=2)["turnover_time"])
     fitted = tt.fit(fast, tt.Measurement.of_events({"turnover_time": 0.6 * seen}), "friction.mu")
     assert fitted.problem.friction.mu == pytest.approx(0.02 / 0.6, rel=0.01)
+
+
+def test_neighbours_of_a_better_place_of_a_grid_are_left_out():
+    region = Region(np.array([0.3]), np.array([[0.06]]))
+    costs = {0.24: 9.0, 0.255: 4.0, 0.27: 1.0, 0.285: 4.0, 0.3: 9.0, 0.33: 3.0, 0.345: 5.0}
+    ranked = sorted((cost, np.array([mu])) for mu, cost in costs.items())
+    assert [float(point[0]) for _, point in apart(ranked, region)] == [0.27, 0.33]
 
 
 def test_laws_are_told_apart_or_not(run):
