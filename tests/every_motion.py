@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_motion
-from tippetop.contact.slip_end import SlipEnd
+from tippetop.contact.slip_end_mode import SlipEnd
 from tippetop.integrators.base import Motion
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.contacts.slip_clock import SlipComponent

@@ -5,8 +5,8 @@ import pytest
 
 from campaigns import seeds
 from independent_answers import Case, Found, Law, can_hold_slip, enumerate_answers, unit
+from tippetop.mechanics.contacts.consistent_answers import Answer, answers
 from tippetop.mechanics.contacts.contact_point import contact_points
-from tippetop.mechanics.contacts.resolver import Answer, answers
 from tippetop.mechanics.contacts.wrench import Wrench
 from tippetop.mechanics.laws.contensou import EllipsoidalLaw
 from tippetop.mechanics.laws.contensou_hertz import HertzLaw

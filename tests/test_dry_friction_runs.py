@@ -14,7 +14,7 @@ from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.guards import STOPPING
 from tippetop.contact.mode import ModeEnd
-from tippetop.contact.slip_end import SlipEnd
+from tippetop.contact.slip_end_mode import SlipEnd
 from tippetop.integrators import make_integrator
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import (

@@ -44,7 +44,7 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Row
 from tippetop.results.catalogue import SWEPT
-from tippetop.results.flags import decoded
+from tippetop.results.cf_flags import decoded
 from tippetop.support.errors import InvalidInput
 
 DURATION = 0.6

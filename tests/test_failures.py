@@ -20,7 +20,7 @@ from tippetop.contact.contact_mode import mode_on_two
 from tippetop.contact.impact import impact
 from tippetop.contact.mode import BOTH, BROKEN, EventKind, Status
 from tippetop.contact.slip_onset import UNSEEN
-from tippetop.mechanics.contacts import pair_resolver
+from tippetop.mechanics.contacts import pair_resolution
 from tippetop.mechanics.contacts.slip_direction import Resisted, directions
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.laws.contensou import EllipsoidalLaw
@@ -202,7 +202,7 @@ def test_each_of_two_contacts_may_carry_the_body_alone_without_a_jam() -> None:
 
 def test_slip_on_two_begins_in_no_direction_where_friction_holds_them() -> None:
     contacts = drawn_contacts(1, EllipsoidalLaw(0.05, 0.01))
-    assert pair_resolver.patches_begin_to_slip(contacts.pair, 0.0) is None
+    assert pair_resolution.patches_begin_to_slip(contacts.pair, 0.0) is None
     mode = mode_on_two(contacts.tops, 0.0, (True, True))
     automaton = Automaton(contacts.tops[0], "fly", 0.0)
     after = automaton.slip_on_two(0.0, contacts.state, mode, BOTH)
@@ -216,7 +216,7 @@ def test_rolling_on_two_contacts_may_be_held_by_nothing_and_begin_neither_way() 
     """One contact slips on very rough ground, which presses it (Painleve's paradox)."""
     contacts = drawn_contacts(2346, resistance=0.25)
     with pytest.raises(Unsolved, match="nothing can hold the rolling of two contacts"):
-        pair_resolver.resolution(contacts.pair, contacts.xi, contacts.ended, contacts.rolls)
+        pair_resolution.resolution(contacts.pair, contacts.xi, contacts.ended, contacts.rolls)
 
 
 def test_patches_whose_direction_of_slip_is_not_found_are_not_held(
@@ -224,14 +224,14 @@ def test_patches_whose_direction_of_slip_is_not_found_are_not_held(
 ) -> None:
     """Where moments cannot hold them either, the search is what has failed."""
     contacts = drawn_contacts(4, EllipsoidalLaw(0.05, 0.01))
-    assert pair_resolver.patches_begin_to_slip(contacts.pair, 0.0) is not None
+    assert pair_resolution.patches_begin_to_slip(contacts.pair, 0.0) is not None
 
     def fail(*_: Any) -> None:
         raise Unsolved("none")
 
-    monkeypatch.setattr(pair_resolver, "directions", fail)
+    monkeypatch.setattr(pair_resolution, "directions", fail)
     with pytest.raises(Unsolved, match="nothing holds two patches"):
-        pair_resolver.patches_begin_to_slip(contacts.pair, 0.0)
+        pair_resolution.patches_begin_to_slip(contacts.pair, 0.0)
 
 
 def test_velocities_that_rounding_hides_are_not_followed(monkeypatch: pytest.MonkeyPatch) -> None:

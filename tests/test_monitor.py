@@ -14,7 +14,7 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.vectors import length
 from tippetop.problem.problem import top_of
-from tippetop.results.monitor import Monitor
+from tippetop.results.accuracy_monitor import Monitor
 
 PROBLEM = tt.presets.report_problem()
 STEMMED = PROBLEM.replace({"body": tt.presets.REPORT_STEM})

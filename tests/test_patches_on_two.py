@@ -23,10 +23,10 @@ from test_sticking_on_two import (
     times,
 )
 from tippetop.contact.closed_pair import rolling_of
-from tippetop.mechanics.contacts import pair_resolver
+from tippetop.mechanics.contacts import pair_resolution
 from tippetop.mechanics.contacts.contact_forces import forces_on_two
 from tippetop.mechanics.contacts.contact_point import ContactPoint, contact_points
-from tippetop.mechanics.contacts.pair_resolver import moments_hold, patches_begin_to_slip
+from tippetop.mechanics.contacts.pair_resolution import moments_hold, patches_begin_to_slip
 from tippetop.mechanics.laws.contensou_hertz import HertzLaw
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.unsolved import Unsolved
@@ -251,7 +251,7 @@ def test_a_search_that_fails_does_not_prove_that_patches_are_held(
     def fail(*_: object) -> None:
         raise Unsolved("no direction is found")
 
-    monkeypatch.setattr(pair_resolver, "both_begin_to_slip", fail)
+    monkeypatch.setattr(pair_resolution, "both_begin_to_slip", fail)
     assert spared(rolling(0.5, 0.00775), 0.5) < 0.0
     with pytest.raises(Unsolved):
         patches_begin_to_slip(*resting_pair(rolling(0.5, 0.00775)))

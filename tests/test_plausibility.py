@@ -16,7 +16,7 @@ from tippetop.mechanics.surfaces.hull import each_surface
 from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.problem.implausible import SENTENCES, sentence
 from tippetop.problem.plausibility import doubts, outside_of
-from tippetop.theory.overview import outlook
+from tippetop.theory.outlook import outlook
 from tippetop.theory.prospects import prospects
 
 REPORT = tt.presets.report_problem()

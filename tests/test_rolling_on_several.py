@@ -11,7 +11,7 @@ import moreau
 import tippetop as tt
 from campaigns import among
 from lying import R, lying, resisted
-from tippetop.contact import slip_end
+from tippetop.contact import slip_end_mode
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.trajectory import Trajectory
 from tippetop.integrators import make_integrator
@@ -188,7 +188,7 @@ def test_rolling_that_slip_held_up_begins_when_that_ends(monkeypatch: pytest.Mon
     }
     found = []
     for horizon in (3e-8, 1e-11):
-        monkeypatch.setattr(slip_end, "LAST_STEPS", (horizon, 1e-16))
+        monkeypatch.setattr(slip_end_mode, "LAST_STEPS", (horizon, 1e-16))
         run = followed(body.replace(launch), 0.004)
         (sticks,), (*_, one, other) = events(run, "stick"), events(run, "rolling starts")
         assert one == other == sticks

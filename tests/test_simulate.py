@@ -797,7 +797,7 @@ def test_samples_that_do_not_fit_into_memory_are_refused(monkeypatch):
     class Memory:
         available = 10_000_000
 
-    memory = import_module("tippetop.results.sample_times").psutil
+    memory = import_module("tippetop.results.checked_times").psutil
     monkeypatch.setattr(memory, "virtual_memory", Memory)
     assert tt.simulate(report(), 0.01, samples=100).sizes["time"] == 100
     for arguments in (
@@ -816,7 +816,7 @@ def test_bytes_per_sample_are_enough():
     """A result and what it is made of take less memory per sample than is reckoned with."""
     import tracemalloc  # noqa: PLC0415
 
-    from tippetop.results.sample_times import BYTES_PER_SAMPLE  # noqa: PLC0415
+    from tippetop.results.checked_times import BYTES_PER_SAMPLE  # noqa: PLC0415
 
     tt.simulate(report(), 0.1)
     samples = 100_000

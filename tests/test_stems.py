@@ -11,7 +11,7 @@ from tippetop.contact import automaton, touching
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import sliding_on_two
 from tippetop.contact.mode import EventKind, Mode
-from tippetop.contact.slip_end import SlipEnd
+from tippetop.contact.slip_end_mode import SlipEnd
 from tippetop.contact.transient import Resting
 from tippetop.integrators import make_integrator
 from tippetop.mechanics.contacts.contact_point import contact_points
@@ -24,7 +24,7 @@ from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import natural, natural_units
 from tippetop.problem.problem import top_of
 from tippetop.results.catalogue import SWEPT, Fault
-from tippetop.results.flags import decoded
+from tippetop.results.cf_flags import decoded
 
 LEINE_GLOCKER = tt.Problem(
     body=tt.Body(

@@ -11,7 +11,7 @@ import xarray as xr
 
 import tippetop as tt
 from lying import lying, resisted
-from tippetop.contact import slip_end
+from tippetop.contact import slip_end_mode
 from tippetop.contact.contact_mode import ContactMode, mode_on_two
 from tippetop.contact.natural_launch import automaton_of
 from tippetop.contact.slip_onset import SlipOnset
@@ -68,7 +68,7 @@ def test_the_end_of_slip_on_two_converges_as_its_last_moments_are_followed_neare
     """On both contacts at the same instant, and on one."""
     found = []
     for horizon in (1e-6, 3e-8, 1e-10):
-        monkeypatch.setattr(slip_end, "LAST_STEPS", (horizon, 1e-16))
+        monkeypatch.setattr(slip_end_mode, "LAST_STEPS", (horizon, 1e-16))
         run = followed_by_steps(resisted(seed), duration)
         found.append([*times(run, "stick"), *run["angular_momentum"].values[-1] * 1e3])
         assert len(times(run, "stick")) == contacts

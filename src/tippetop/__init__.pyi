@@ -76,7 +76,7 @@ from .support.errors import Unavailable as Unavailable
 from .sweeps.run_sweep import sweep as sweep
 from .sweeps.store import read_sweep as read_sweep
 from .theory.drilling import standing_time as standing_time
-from .theory.overview import steady_states as steady_states
+from .theory.outlook import steady_states as steady_states
 from .theory.prediction import Prediction as Prediction
 from .theory.prediction import predict as predict
 from .theory.spectra import least_straight_spin as least_straight_spin

@@ -24,6 +24,7 @@ from tippetop.problem.problem import (
     top_of,
 )
 from tippetop.results.catalogue import Outcome
+from tippetop.results.checked_times import sample_times
 from tippetop.results.dataset import assemble
 from tippetop.results.derived import variables_of
 from tippetop.results.event_functions import EventSearch, FunctionEvent, Value
@@ -31,9 +32,8 @@ from tippetop.results.metrics import metrics, outcomes_of
 from tippetop.results.observables import Recorder
 from tippetop.results.run_metrics import RunMetrics
 from tippetop.results.run_solution import RunSolution
-from tippetop.results.sample_times import sample_times
+from tippetop.results.sample_counts import DEFAULT_SAMPLES
 from tippetop.results.samples import event_in_si
-from tippetop.results.sampling import DEFAULT_SAMPLES
 from tippetop.support.errors import InvalidInput, require
 from tippetop.support.units import number_in
 from tippetop.support.validation import require_callback

@@ -2,7 +2,7 @@ import pytest
 import xarray as xr
 
 import tippetop as tt
-from tippetop.results.sampling import sample_count
+from tippetop.results.sample_counts import sample_count
 
 
 @pytest.fixture(scope="session")

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 import tippetop as tt
 from tippetop.export import poses
-from tippetop.results import sampling
+from tippetop.results import sample_counts
 
 
 def angle_between(found: poses.Poses, run: xr.Dataset) -> np.ndarray:
@@ -21,7 +21,7 @@ def angle_between(found: poses.Poses, run: xr.Dataset) -> np.ndarray:
 def test_poses_between_samples_are_those_of_a_simulation_there(spin: float, tilt: float) -> None:
     problem = tt.presets.report_problem(spin=spin, tilt=tilt)
     times = np.sort(np.random.default_rng(1).uniform(0.0, 10.0, 300))
-    run = tt.simulate(problem, 10.0, samples=sampling.sample_count(problem, 10.0))
+    run = tt.simulate(problem, 10.0, samples=sample_counts.sample_count(problem, 10.0))
     exact = tt.simulate(problem, 10.0, times=times)
     found = poses.poses_at(run, times)
     assert angle_between(found, exact).max() < 5e-3

@@ -9,7 +9,7 @@ import xarray as xr
 import tippetop as tt
 from launches import in_javascript
 from tippetop.export import track
-from tippetop.results import sampling
+from tippetop.results import sample_counts
 
 
 def test_a_block_holds_the_run(flying: xr.Dataset) -> None:
@@ -76,20 +76,20 @@ def test_friction_takes_the_energy_that_slides_away() -> None:
 
 def test_a_faster_top_gets_more_samples_up_to_a_limit() -> None:
     counts = [
-        sampling.sample_count(tt.presets.report_problem(spin=spin), 20.0)
+        sample_counts.sample_count(tt.presets.report_problem(spin=spin), 20.0)
         for spin in (50.0, 155.0, 300.0, 1e5)
     ]
     assert counts == sorted(counts)
-    assert counts[-1] <= sampling.MOST_SAMPLES + 1
+    assert counts[-1] <= sample_counts.MOST_SAMPLES + 1
 
 
 def test_a_tumbling_top_turns_little_between_samples() -> None:
     """The tilt rate counts as the spin does."""
     problem = tt.presets.report_problem(spin=0.0).replace({"launch.tilt_rate": 400.0})
-    samples = sampling.sample_count(problem, 1.0)
-    assert 400.0 / (samples - 1) <= sampling.TURN_PER_SAMPLE
+    samples = sample_counts.sample_count(problem, 1.0)
+    assert 400.0 / (samples - 1) <= sample_counts.TURN_PER_SAMPLE
     still = tt.presets.report_problem(spin=0.0, tilt=0.0)
-    assert sampling.sample_count(still, 1.0) < samples
+    assert sample_counts.sample_count(still, 1.0) < samples
 
 
 def test_the_page_samples_by_the_same_rule() -> None:
@@ -98,4 +98,4 @@ def test_the_page_samples_by_the_same_rule() -> None:
         for spin, rate in ((0.0, 400.0), (155.0, 0.0), (1e5, 0.0))
     ]
     asked = [{"samples": 20.0, "problem": one.model_dump(mode="json")} for one in problems]
-    assert list(in_javascript(asked)) == [sampling.sample_count(one, 20.0) for one in problems]
+    assert list(in_javascript(asked)) == [sample_counts.sample_count(one, 20.0) for one in problems]

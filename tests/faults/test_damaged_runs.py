@@ -12,7 +12,7 @@ import xarray as xr
 import tippetop as tt
 from campaigns import examples, seeds
 from tippetop.results import netcdf
-from tippetop.results.flags import decoded
+from tippetop.results.cf_flags import decoded
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,8 @@ import pytest
 
 from tippetop.integrators import Guard
 from tippetop.integrators.base import Motion
-from tippetop.integrators.falls import first_fall
 from tippetop.integrators.sampling import Accepted, StepByStep
+from tippetop.integrators.zero_crossings import first_fall
 
 ERROR = 1e-11
 STEP = (3.0, 4.0)

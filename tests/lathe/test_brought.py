@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import tippetop as tt
 from tippetop.cli.commands import app
 from tippetop.lathe.files import read_with_remarks
-from tippetop.theory.overview import outlook
+from tippetop.theory.outlook import outlook
 
 R = 20.0
 HALF = R / math.sqrt(2.0)

@@ -13,7 +13,7 @@ from tippetop.contact.automaton import Automaton
 from tippetop.contact.collocated_end import collocated_end
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.mode import EventKind
-from tippetop.contact.slip_end import SlipEnd
+from tippetop.contact.slip_end_mode import SlipEnd
 from tippetop.contact.slip_end_motion import pack_clock, rates_in_time, unpack_clock
 from tippetop.contact.slip_onset import onset_motion
 from tippetop.contact.trajectory import Trajectory

@@ -14,7 +14,7 @@ from tippetop.contact.automaton import Automaton
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.guards import SLIP
 from tippetop.contact.mode import EventKind, split
-from tippetop.contact.slip_end import SlipEnd
+from tippetop.contact.slip_end_mode import SlipEnd
 from tippetop.contact.slip_end_motion import rates_in_time
 from tippetop.contact.slip_onset import SlipOnset, onset_motion
 from tippetop.contact.slip_phase import follow_slip

@@ -11,7 +11,7 @@ from tippetop.report.claim import Verdict
 from tippetop.report.claims.registry import CLAIMS
 from tippetop.report.experiments.methods import effort
 from tippetop.report.experiments.registry import EXPERIMENTS
-from tippetop.report.quoted import END_OF_FIG_5
+from tippetop.report.printed_numbers import END_OF_FIG_5
 from tippetop.run import simulate
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import tippetop as tt
-from tippetop.integrators.first_fall import single_fall
+from tippetop.integrators.polynomial_zeros import single_fall
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.contacts.branches import on_branch, on_numbered_branch
 from tippetop.mechanics.contacts.forces import velocity_without_slip

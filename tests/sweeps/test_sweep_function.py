@@ -10,8 +10,8 @@ from tippetop.problem.launch import Launch
 from tippetop.problem.presets import report_problem
 from tippetop.problem.problem import Problem
 from tippetop.problem.shapes import EccentricSphere, Spheroid
+from tippetop.results.cf_flags import decoded, encoded
 from tippetop.results.dataframes import to_dataframe
-from tippetop.results.flags import decoded, encoded
 from tippetop.support.errors import FileTrouble, InvalidInput
 from tippetop.sweeps import (
     Axis,

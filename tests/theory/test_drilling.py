@@ -24,7 +24,7 @@ from tippetop.mechanics.state import State
 from tippetop.problem.problem import top_of
 from tippetop.theory.apparent import critical_spin_from_spectrum
 from tippetop.theory.drilling import spin_rate, standing_time, time_to_stand
-from tippetop.theory.overview import outlook
+from tippetop.theory.outlook import outlook
 from tippetop.theory.prospects import prospects
 from tippetop.theory.stability import (
     drilling,

@@ -23,7 +23,7 @@ from tippetop.problem.problem import Problem, top_of
 from tippetop.support.errors import InvalidInput
 from tippetop.theory.averaging import arrival_time_limit, nutation_of_launch
 from tippetop.theory.groups import Group
-from tippetop.theory.overview import outlook
+from tippetop.theory.outlook import outlook
 from tippetop.theory.prediction import steady_state_of_launch
 from tippetop.theory.stability import spectrum
 from tippetop.theory.steady import FASTEST, SteadyKind, precession_branch, vertical_spin

@@ -9,7 +9,7 @@ import pytest
 
 import tippetop as tt
 from tippetop.problem.problem import top_of
-from tippetop.theory.overview import outlook
+from tippetop.theory.outlook import outlook
 from tippetop.theory.stem import jellett_about
 
 

@@ -9,7 +9,7 @@ from tippetop.cli.options import Choice, Json, of_a_problem
 from tippetop.cli.terminal import facts, listing, show, show_json, spelled
 
 if TYPE_CHECKING:
-    from tippetop.theory.overview import AnalysedState, Outlook
+    from tippetop.theory.outlook import AnalysedState, Outlook
     from tippetop.theory.stability import Spectrum
     from tippetop.theory.steady import SteadyState
 
@@ -36,7 +36,7 @@ def critical(
 ) -> None:
     """Show what theory says of a launch: its critical spins, its end, and the time until then."""
     from tippetop.problem.implausible import warn_if_implausible  # noqa: PLC0415 - slow to import
-    from tippetop.theory.overview import outlook  # noqa: PLC0415
+    from tippetop.theory.outlook import outlook  # noqa: PLC0415
 
     problem = choice.problem()
     warn_if_implausible(problem)

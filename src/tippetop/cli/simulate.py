@@ -22,7 +22,7 @@ from tippetop.cli.options import (
 )
 from tippetop.cli.terminal import facts, show, show_json
 from tippetop.problem.problem import top_of
-from tippetop.results.sampling import DEFAULT_SAMPLES, sample_count
+from tippetop.results.sample_counts import DEFAULT_SAMPLES, sample_count
 from tippetop.results.time_digits import digits_left
 from tippetop.support.errors import InvalidInput
 from tippetop.support.files import place_for, refuse_ending_of_others, require_ending

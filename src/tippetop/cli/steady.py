@@ -32,7 +32,7 @@ NAMES = ("tilt", "rate", "radius", "spin")
 @of_a_problem
 def steady(choice: Choice, at: At = None, as_json: Json = False) -> None:
     """Show steady motions of a body, such as a coin's that rolls round a circle, and which last."""
-    from tippetop.theory.overview import steady_states  # noqa: PLC0415 - slow to import
+    from tippetop.theory.outlook import steady_states  # noqa: PLC0415 - slow to import
 
     problem = choice.problem()
     states = steady_states(problem, **_numbers(at or []))

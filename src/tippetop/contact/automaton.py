@@ -4,7 +4,7 @@ A mode says what ended it (`ModeEnd`); the automaton says what follows (`Transit
 names next modes. Read `RULES` first: one rule for every cause of a mode's end. What comes to rest
 normally on the table goes through `Automaton.resting`, and from there to one contact
 (`Automaton.resolve`) or two (`Automaton.resolve_two`). Both ask the resolver for every consistent
-answer (`tippetop.mechanics.contacts.resolver`), and `Automaton._chosen` takes one.
+answer (`tippetop.mechanics.contacts.consistent_answers`), and `Automaton._chosen` takes one.
 """
 
 from collections.abc import Callable, Sequence
@@ -51,7 +51,7 @@ from tippetop.contact.mode import (
     failed,
 )
 from tippetop.contact.settling_flat import FLAT, SettlingFlat, settling_flat
-from tippetop.contact.slip_end import SlipEnd, clock_at
+from tippetop.contact.slip_end_mode import SlipEnd, clock_at
 from tippetop.contact.slip_end_motion import (
     JAMMED,
     OVERTAKEN,
@@ -85,12 +85,12 @@ from tippetop.mechanics.contacts.branches import (
     on_limit_branch,
     on_other_branch,
 )
+from tippetop.mechanics.contacts.consistent_answers import Answer, answers
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.contacts.onset_forces import Onset, contact_after_end, find_onset
 from tippetop.mechanics.contacts.pair import Tops, slips_of, without_tilting
-from tippetop.mechanics.contacts.pair_resolver import Resolution, rolling_direction
-from tippetop.mechanics.contacts.resolver import Answer, answers
+from tippetop.mechanics.contacts.pair_resolution import Resolution, rolling_direction
 from tippetop.mechanics.contacts.slip_clock import SlipComponent
 from tippetop.mechanics.contacts.slip_variables import (
     HORIZON,

@@ -7,6 +7,7 @@ from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.impact import begins_without_approach
 from tippetop.contact.mode import Event, EventKind
 from tippetop.mechanics.contacts.branches import off_branch
+from tippetop.mechanics.contacts.consistent_answers import Answer, answers
 from tippetop.mechanics.contacts.contact_forces import forces_on_two
 from tippetop.mechanics.contacts.contact_point import contact_points
 from tippetop.mechanics.contacts.forces import directions_of, is_set_valued, slip_length
@@ -18,14 +19,13 @@ from tippetop.mechanics.contacts.pair import (
     turning_along,
     without_tilting,
 )
-from tippetop.mechanics.contacts.pair_resolver import (
+from tippetop.mechanics.contacts.pair_resolution import (
     Resolution,
     both_begin_to_slip,
     first_begins_to_slip,
     rolling_of_slip,
     turning_about,
 )
-from tippetop.mechanics.contacts.resolver import Answer, answers
 from tippetop.mechanics.contacts.slip_variables import has_ended, is_rolling, scaled, slip_of
 from tippetop.mechanics.contacts.wrench import Slip
 from tippetop.mechanics.motion import along_table, on_table

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tippetop.integrators.base import Array
-from tippetop.integrators.falls import brackets
 from tippetop.integrators.iteration import (
     Iteration,
     copied,
@@ -18,6 +17,7 @@ from tippetop.integrators.iteration import (
     put_rows,
     room,
 )
+from tippetop.integrators.zero_crossings import brackets
 from tippetop.mechanics.contacts.gauss_points import (
     CONSTANTS,
     GAUSS,

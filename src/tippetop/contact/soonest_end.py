@@ -4,7 +4,7 @@ import math
 
 from tippetop.contact.closed_contacts import has_second
 from tippetop.contact.contact_mode import ContactMode
-from tippetop.contact.slip_end import SlipEnd
+from tippetop.contact.slip_end_mode import SlipEnd
 from tippetop.mechanics.contacts.branches import is_branched, on_branch, on_limit_branch
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import forces_and_accelerations, is_set_valued

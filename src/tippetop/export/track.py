@@ -17,7 +17,7 @@ from tippetop.export.poses import contact_path
 from tippetop.figures.appearance import SCENES, size, toy_parts
 from tippetop.problem.problem import Problem
 from tippetop.results.account_text import describe
-from tippetop.results.flags import encoded
+from tippetop.results.cf_flags import encoded
 
 Array = NDArray[np.float64]
 

@@ -20,7 +20,7 @@ from tippetop.figures.style import (
     pi_ticks,
 )
 from tippetop.results.catalogue import SWEPT, Outcome, written_unit
-from tippetop.results.flags import encoded
+from tippetop.results.cf_flags import encoded
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.suggestions import not_one_of
 

@@ -14,8 +14,8 @@ from tippetop.integrators.base import Array
 from tippetop.mechanics.top import natural_units
 from tippetop.problem.problem import Problem, require_problem, top_of
 from tippetop.results.catalogue import DERIVED, LISTED, METRICS, SAMPLED, Variable
-from tippetop.results.sample_times import sample_times
-from tippetop.results.sampling import DEFAULT_SAMPLES
+from tippetop.results.checked_times import sample_times
+from tippetop.results.sample_counts import DEFAULT_SAMPLES
 from tippetop.support.units import number_in
 from tippetop.support.validation import require_names
 

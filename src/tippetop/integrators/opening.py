@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from tippetop.integrators.base import NOT_FINITE, Arc, Array, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.integrators.expansion import expanded
-from tippetop.integrators.first_fall import LARGEST_POWER, first_fall
+from tippetop.integrators.polynomial_zeros import LARGEST_POWER, first_fall
 from tippetop.mechanics.series import horner
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tippetop.integrators.dense import Array, powers
-from tippetop.integrators.first_fall import bernstein, first_fall
+from tippetop.integrators.polynomial_zeros import bernstein, first_fall
 from tippetop.mechanics.vectors import Row, Scalar
 
 Choice: TypeAlias = Callable[[Any, Any, Any], Any]
@@ -126,7 +126,7 @@ class Polynomials:
         """First times at which the polynomials fall to zero from above, nan where they do not,
         shape (n,).
 
-        See `tippetop.integrators.first_fall`; `after_rise` is of all, or of each.
+        See `tippetop.integrators.polynomial_zeros`; `after_rise` is of all, or of each.
         """
         zeros = np.full(len(self.span), np.nan)
         bounds = times(_bernstein_matrix(len(self.unit)), self.unit)

@@ -10,8 +10,8 @@ import numpy as np
 
 from tippetop.integrators.base import Arc, Array, Motion
 from tippetop.integrators.dense import DenseSolution, chebyshev
-from tippetop.integrators.falls import Dense, first_fall
 from tippetop.integrators.rates import RightHandSide
+from tippetop.integrators.zero_crossings import Dense, first_fall
 
 ARC_STEPS = 512
 """Steps in an arc."""

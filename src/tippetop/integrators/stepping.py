@@ -12,7 +12,7 @@ import numpy as np
 from tippetop.integrators.base import NO_START, NO_STEP, Arc, Array, Motion
 from tippetop.integrators.dense import DenseSolution, longer
 from tippetop.integrators.dormand_prince import FULL, POWERS, ROWS, SINGULAR, STUCK, SUSPECT
-from tippetop.integrators.falls import first_fall
+from tippetop.integrators.zero_crossings import first_fall
 
 FEW, WIDER, MANY = 128, 4, 4096
 """Steps for which there is room at first, how many times as many there is room for then, and in an

@@ -16,9 +16,9 @@ from tippetop.graph.recording import Recorded, record, recordable
 from tippetop.graph.taylor_coefficients import NodeArithmetic
 from tippetop.integrators.base import NO_STEP, NOT_FINITE, TOLERANCES, Arc, Array, Guard, Motion
 from tippetop.integrators.dense import DenseSolution
-from tippetop.integrators.first_fall import single_fall
 from tippetop.integrators.machine_code import loaded
 from tippetop.integrators.polynomial_minima import looked_at, may_fall
+from tippetop.integrators.polynomial_zeros import single_fall
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.vectors import Scalar

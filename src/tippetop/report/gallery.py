@@ -12,7 +12,7 @@ from tippetop.figures import dry, flights, methods, real, runs, sweeps, theory, 
 from tippetop.figures.euler_angles import euler_angles_drawing
 from tippetop.figures.model import model_drawing
 from tippetop.figures.tippe_top import tippe_top_drawing
-from tippetop.report import quoted
+from tippetop.report import printed_numbers
 from tippetop.report.claim import Data
 from tippetop.report.experiments.runs import likely_end
 from tippetop.report.texts import filled_tables
@@ -47,14 +47,14 @@ class Plate:
         return xr.merge(parts, combine_attrs="drop_conflicts", compat="no_conflicts", join="outer")
 
 
-_CRITICAL = (float(quoted.CRITICAL_SPINS[0]), float(quoted.CRITICAL_SPINS[1]))
-_ABNORMAL = float(quoted.ABNORMAL_SPIN)
+_CRITICAL = (float(printed_numbers.CRITICAL_SPINS[0]), float(printed_numbers.CRITICAL_SPINS[1]))
+_ABNORMAL = float(printed_numbers.ABNORMAL_SPIN)
 
 
 def _printed_times(figure: str) -> dict[str, Any]:
     """Return the times that the report prints for a figure, as arguments of its drawing."""
-    times = tuple(float(time) for time in quoted.REVERSALS[figure])
-    return {"reported_turn": float(quoted.TURNED_AT[figure]), "reported_reversals": times}
+    times = tuple(float(time) for time in printed_numbers.REVERSALS[figure])
+    return {"reported_turn": float(printed_numbers.TURNED_AT[figure]), "reported_reversals": times}
 
 
 def _slow_launch(run: xr.Dataset) -> Figure:
@@ -62,7 +62,7 @@ def _slow_launch(run: xr.Dataset) -> Figure:
         run,
         precession_limit=80.0,
         **_printed_times("fig05"),
-        reported_end=(float(likely_end(run)["window"]), quoted.END_OF_FIG_5),
+        reported_end=(float(likely_end(run)["window"]), printed_numbers.END_OF_FIG_5),
         zoom=(0.0, 1.6),
         inset=(0.12, 0.57, 0.34, 0.38),
     )
@@ -76,14 +76,15 @@ DRAWN: dict[str, Draw] = {
     "fig05": _slow_launch,
     "fig06": partial(sweeps.final_tilt_figure, reported=(*_CRITICAL, _ABNORMAL)),
     "windows": partial(sweeps.windows_figure, reported=_CRITICAL),
-    "fig07": partial(sweeps.flip_time_figure, reported=float(quoted.EXPONENT)),
+    "fig07": partial(sweeps.flip_time_figure, reported=float(printed_numbers.EXPONENT)),
     "fig08": partial(runs.tilt_figure, zoom=(12.8, 13.8)),
     "fig09": partial(runs.tilt_figure, zoom=(5.3, 5.8), inset=(0.6, 0.52, 0.38, 0.44)),
     "fig10": partial(
-        runs.energy_figure, reported=(float(quoted.ENERGY_TIME), float(quoted.ENERGY))
+        runs.energy_figure,
+        reported=(float(printed_numbers.ENERGY_TIME), float(printed_numbers.ENERGY)),
     ),
     "fig11": runs.force_figure,
-    "fig12": partial(runs.stopped_figure, reported_stop=float(quoted.STOP)),
+    "fig12": partial(runs.stopped_figure, reported_stop=float(printed_numbers.STOP)),
     "fig13": runs.upright_figure,
     "fig14": partial(runs.tilt_figure, zoom=(5.5, 6.0)),
     "fig15": partial(runs.tilt_figure, zoom=(5.5, 6.0)),

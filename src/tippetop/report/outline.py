@@ -18,8 +18,8 @@ out.
 STORY: list[dict[str, str]] = _TABLES["story"]
 """The story that opens the page: for each part the name of a figure, a title and a text.
 
-In the texts, {claims[NAME][FIELD]} stands for a field of a claim in words, and {quoted.NAME} for a
-constant.
+In the texts, {claims[NAME][FIELD]} stands for a field of a claim in words, and
+{printed_numbers.NAME} for a constant.
 """
 
 ADDED_SECTIONS = ("Why", "Friction", "Real tops")

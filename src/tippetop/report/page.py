@@ -15,7 +15,7 @@ import jinja2
 from PIL import Image
 
 from tippetop.integrators import DEFAULT
-from tippetop.report import quoted
+from tippetop.report import printed_numbers
 from tippetop.report.claim import RULE, Judgement, Value, Verdict, count_verdicts, in_words
 from tippetop.report.gallery import PLATES, Plate
 from tippetop.report.outline import (
@@ -191,7 +191,10 @@ def _shown(plate: Plate, figures: Path, claims: Sequence[Worded], section: str) 
 
 def _story(claims: Sequence[Worded], shown: Set[str], figures: Path) -> list[dict[str, str]]:
     """Return the parts of the story whose figures are shown, each with its picture."""
-    fields = {"claims": {claim["id"]: claim for claim in claims}, "quoted": quoted}
+    fields = {
+        "claims": {claim["id"]: claim for claim in claims},
+        "printed_numbers": printed_numbers,
+    }
     return [
         {
             "id": part["figure"],

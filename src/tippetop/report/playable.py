@@ -5,7 +5,7 @@ from tippetop.export.track import pack_run
 from tippetop.problem.presets import report_problem
 from tippetop.report.experiments.runs import unilateral
 from tippetop.results.account_text import describe
-from tippetop.results.sampling import sample_count
+from tippetop.results.sample_counts import sample_count
 from tippetop.run import simulate
 from tippetop.support.errors import Unavailable
 

@@ -7,8 +7,8 @@ import pandas as pd
 import xarray as xr
 
 from tippetop.results.catalogue import LISTED
+from tippetop.results.cf_flags import decoded
 from tippetop.results.dataset import is_sweep, require_run
-from tippetop.results.flags import decoded
 from tippetop.support.errors import InvalidInput
 from tippetop.support.suggestions import not_one_of
 

@@ -20,7 +20,7 @@ from tippetop.results.catalogue import (
     SWEPT,
     Variable,
 )
-from tippetop.results.flags import worded
+from tippetop.results.cf_flags import worded
 from tippetop.support.errors import MISSING, InvalidInput
 from tippetop.support.lazy_pint import leave_pint_alone
 

@@ -5,12 +5,12 @@ cannot be recorded and compiled as the guards of contact modes are, and the dens
 to rounding, so that one mechanism serves all functions. The integrator takes the same steps with
 and without them.
 
-`tippetop.integrators.falls.brackets`, the search for guards, is another search for three reasons.
-It looks along one guard of one step for the first fall from above, where this one lists every
-crossing, in either direction. It evaluates numbers one by one, where this one calls a function once
-for all steps of a block: of functions written in NumPy a call costs as much as hundreds of its
-values. And a function of a user may jump, within a step and across an impact between two, which
-counts as a crossing; a guard does not.
+`tippetop.integrators.zero_crossings.brackets`, the search for guards, is another one for three
+reasons. It looks along one guard of one step for the first fall from above, where this one lists
+every crossing, in either direction. It evaluates numbers one by one, where this one calls a
+function once for all steps of a block: of functions written in NumPy a call costs as much as
+hundreds of its values. And a function of a user may jump, within a step and across an impact
+between two, which counts as a crossing; a guard does not.
 """
 
 from collections.abc import Callable, Iterator, Mapping

@@ -12,7 +12,7 @@ from pathlib import Path
 import psutil
 import xarray as xr
 
-from tippetop.results.flags import decoded, encoded
+from tippetop.results.cf_flags import decoded, encoded
 from tippetop.support.errors import FileTrouble, require
 from tippetop.support.files import (
     in_words,

@@ -19,7 +19,7 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import each_surface, is_edge
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import Row, Scalar
-from tippetop.results.monitor import NEGATIVE, Monitor, monitored_quantities
+from tippetop.results.accuracy_monitor import NEGATIVE, Monitor, monitored_quantities
 from tippetop.results.samples import Samples
 from tippetop.results.sums import INTEGRALS, RunSums
 

@@ -18,11 +18,11 @@ from tippetop.mechanics.surfaces.hull import outer_height
 from tippetop.problem.launch import Launch
 from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import LISTED, METRICS, MONITORS
+from tippetop.results.checked_times import sample_times
 from tippetop.results.dataset import assemble
 from tippetop.results.derived import variables_of
 from tippetop.results.motion_state import MotionState, states_in
 from tippetop.results.observables import Recorder
-from tippetop.results.sample_times import sample_times
 from tippetop.support.errors import InvalidInput
 from tippetop.support.suggestions import not_one_of
 

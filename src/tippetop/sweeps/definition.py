@@ -15,7 +15,7 @@ from tippetop.graph.own_parts import require_recordable
 from tippetop.integrators.base import Array
 from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import SAMPLED
-from tippetop.results.sample_times import listed_times, sample_times
+from tippetop.results.checked_times import listed_times, sample_times
 from tippetop.support.errors import MISSING, Described, InvalidInput
 from tippetop.support.files import made_of, read_text
 from tippetop.support.parsing import parse_toml

@@ -11,9 +11,9 @@ from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.surfaces.hull import lowest_gap
 from tippetop.mechanics.vectors import length
+from tippetop.results.accuracy_monitor import STATUSES_OF_MOTION, Monitor, monitored_quantities
 from tippetop.results.catalogue import Fault, Outcome
 from tippetop.results.metrics import STATUSES, Ends, metrics, outcomes_of, settled_band
-from tippetop.results.monitor import STATUSES_OF_MOTION, Monitor, monitored_quantities
 from tippetop.results.settling import settled_tilt_of_one, settled_tilts
 from tippetop.support.errors import Unavailable
 from tippetop.sweeps.cells import cells_of, spread

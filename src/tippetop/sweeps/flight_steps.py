@@ -10,8 +10,8 @@ import numpy as np
 from tippetop.contact.flight import SIZE, Start
 from tippetop.graph.taylor_coefficients import SharedSeries
 from tippetop.integrators.base import Array, Motion
-from tippetop.integrators.first_fall import single_fall
 from tippetop.integrators.polynomial_minima import least_value, looked_at
+from tippetop.integrators.polynomial_zeros import single_fall
 from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
 from tippetop.mechanics.surfaces.hull import is_edge
 from tippetop.mechanics.top import Kind

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tippetop.integrators.base import Array
-from tippetop.integrators.first_fall import single_fall
 from tippetop.integrators.polynomial_minima import least_value, looked_at
+from tippetop.integrators.polynomial_zeros import single_fall
 from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.series import Arithmetic, horner
 from tippetop.mechanics.vectors import Scalar

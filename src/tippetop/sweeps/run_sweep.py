@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from tippetop.problem.implausible import warn
 from tippetop.problem.problem import Problem
-from tippetop.results.flags import decoded
+from tippetop.results.cf_flags import decoded
 from tippetop.support.errors import Described, InvalidInput, require
 from tippetop.support.progress_bar import Tell, progress_bar
 from tippetop.support.validation import require_callback

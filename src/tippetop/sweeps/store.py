@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from tippetop.results.flags import decoded
+from tippetop.results.cf_flags import decoded
 from tippetop.support.errors import OTHER_OUT, OVERWRITE, RESUME, FileTrouble, Unavailable, require
 from tippetop.support.files import in_words, path_of, require_ending
 from tippetop.support.installation import install_command

@@ -22,7 +22,6 @@ from typing import Any, NamedTuple
 from tippetop.contact.guards import BRANCH
 from tippetop.graph.taylor_coefficients import SharedSeries
 from tippetop.integrators.base import Motion
-from tippetop.integrators.first_fall import single_fall
 from tippetop.integrators.polynomial_minima import (
     TINY,
     least_value,
@@ -30,6 +29,7 @@ from tippetop.integrators.polynomial_minima import (
     lower_bound,
     may_fall,
 )
+from tippetop.integrators.polynomial_zeros import single_fall
 from tippetop.mechanics.series import Arithmetic, horner, solved, unknown
 from tippetop.mechanics.vectors import Scalar
 

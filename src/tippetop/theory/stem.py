@@ -1,6 +1,6 @@
 """Condition for standing on a stem: the least Jellett's integral about its tip.
 
-The least spin of a launch that has it is `tippetop.theory.overview.outlook`'s; those of a body on
+The least spin of a launch that has it is `tippetop.theory.outlook.outlook`'s; those of a body on
 one surface are in `thresholds`, and sizes with which it is reached in `advice`.
 """
 

@@ -10,6 +10,7 @@ normal impulses for the forces that weight calls for.
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from tippetop.mechanics.contacts.consistent_answers import moved_under
 from tippetop.mechanics.contacts.contact_forces import ContactForces
 from tippetop.mechanics.contacts.contact_point import ContactPoint
 from tippetop.mechanics.contacts.forces import (
@@ -20,8 +21,7 @@ from tippetop.mechanics.contacts.forces import (
 )
 from tippetop.mechanics.contacts.onset_forces import contact_after_end
 from tippetop.mechanics.contacts.pair import ContactPair, slip_apart, slips_of
-from tippetop.mechanics.contacts.pair_resolver import OnTwo, Resolution, of_slips
-from tippetop.mechanics.contacts.resolver import moved_under
+from tippetop.mechanics.contacts.pair_resolution import OnTwo, Resolution, of_slips
 from tippetop.mechanics.contacts.slip_direction import Resisted, directions
 from tippetop.mechanics.contacts.slip_variables import LEFT_OVER, scaled, size, slip_part
 from tippetop.mechanics.contacts.system import ContactRates

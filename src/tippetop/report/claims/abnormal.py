@@ -6,7 +6,7 @@ import xarray as xr
 from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.claims.flight import ROUNDED
 from tippetop.report.experiments.spins import TURNED
-from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS, TILT
+from tippetop.report.printed_numbers import ABNORMAL_SPIN, CRITICAL_SPINS, TILT
 
 
 @examines("sec4-energy-falls", "run-175", "flights", "flights-bouncing")

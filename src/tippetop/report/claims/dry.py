@@ -5,7 +5,7 @@ import xarray as xr
 
 from tippetop.report.claim import Finding, both, examines, listed
 from tippetop.report.experiments.dry import COHEN_STEP, COHEN_WINDOW
-from tippetop.report.quoted import NORMAL_FRICTION, ROUGH_FRICTION, SPIN
+from tippetop.report.printed_numbers import NORMAL_FRICTION, ROUGH_FRICTION, SPIN
 from tippetop.report.tolerance import ROUNDING
 
 _EQUAL = 1e-6

@@ -7,7 +7,7 @@ from tippetop.mechanics.euler import published_parameters
 from tippetop.problem.presets import REPORT
 from tippetop.problem.problem import Problem, top_of
 from tippetop.report.claim import Finding, examines
-from tippetop.report.quoted import ENERGY, ENERGY_TIME, STOP
+from tippetop.report.printed_numbers import ENERGY, ENERGY_TIME, STOP
 from tippetop.report.readings import turning_points
 from tippetop.report.tolerance import PLOTTED, rounded
 

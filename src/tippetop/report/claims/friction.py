@@ -7,7 +7,7 @@ import xarray as xr
 
 from tippetop.report.claim import Finding, both, examines, listed
 from tippetop.report.experiments.friction import power_law
-from tippetop.report.quoted import EXPONENT
+from tippetop.report.printed_numbers import EXPONENT
 from tippetop.report.tolerance import ARRIVED, PLOTTED, TRANSCRIBED, half_last_digit
 
 _LOST = 0.1

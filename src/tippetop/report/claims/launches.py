@@ -8,7 +8,7 @@ import xarray as xr
 from tippetop.problem.presets import REPORT, REPORT_TABLE_1
 from tippetop.report.claim import Finding, both, examines
 from tippetop.report.experiments.runs import likely_end
-from tippetop.report.quoted import END_OF_FIG_5, TILT, TURNED_AT
+from tippetop.report.printed_numbers import END_OF_FIG_5, TILT, TURNED_AT
 from tippetop.report.readings import SETTLED
 from tippetop.report.tolerance import AROUND, ARRIVED, PLOTTED, Tolerance, rounded
 

@@ -5,7 +5,7 @@ import xarray as xr
 
 from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.experiments.runs import likely_end
-from tippetop.report.quoted import END_OF_FIG_5, MU, ROUGH_FRICTION
+from tippetop.report.printed_numbers import END_OF_FIG_5, MU, ROUGH_FRICTION
 from tippetop.report.tolerance import PLOTTED, ROUNDING, TRANSCRIBED, Tolerance
 
 

@@ -5,7 +5,7 @@ import xarray as xr
 
 from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.experiments.spins import TURNED
-from tippetop.report.quoted import CRITICAL_SPINS
+from tippetop.report.printed_numbers import CRITICAL_SPINS
 from tippetop.report.tolerance import Tolerance
 
 _STEP = Tolerance(

@@ -8,7 +8,7 @@ import xarray as xr
 from tippetop.problem.presets import REPORT
 from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.experiments.equations import residual_of_217
-from tippetop.report.quoted import END_OF_FIG_5
+from tippetop.report.printed_numbers import END_OF_FIG_5
 from tippetop.report.tolerance import STEADY, TRANSCRIBED, Tolerance, rounded
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 
 from tippetop.report.claim import Finding, examines, listed
 from tippetop.report.experiments.theory import QUOTED_SPINS
-from tippetop.report.quoted import ABNORMAL_SPIN, CRITICAL_SPINS
+from tippetop.report.printed_numbers import ABNORMAL_SPIN, CRITICAL_SPINS
 from tippetop.report.readings import SETTLED
 from tippetop.report.tolerance import Tolerance, rounded
 

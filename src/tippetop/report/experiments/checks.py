@@ -8,7 +8,7 @@ from tippetop.problem.presets import report_problem
 from tippetop.problem.problem import Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import on_table
-from tippetop.report.quoted import MU
+from tippetop.report.printed_numbers import MU
 from tippetop.run import simulate
 
 

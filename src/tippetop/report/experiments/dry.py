@@ -23,7 +23,7 @@ from tippetop.problem.presets import report_problem
 from tippetop.problem.problem import Problem, top_of
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import event_times, stopping
-from tippetop.report.quoted import SPIN, TILT
+from tippetop.report.printed_numbers import SPIN, TILT
 from tippetop.run import simulate
 
 SLIPPERY = 0.028

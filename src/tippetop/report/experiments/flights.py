@@ -10,7 +10,7 @@ from tippetop.problem.presets import report_problem
 from tippetop.problem.problem import Problem
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import WINDOW, flight_readings, stopping, swept, unilateral
-from tippetop.report.quoted import MU, TILT
+from tippetop.report.printed_numbers import MU, TILT
 from tippetop.run import simulate
 
 LONG_WINDOW = 100.0

@@ -13,7 +13,7 @@ from tippetop.problem.presets import report_problem
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table, swept
 from tippetop.report.listing import listing_run
-from tippetop.report.quoted import NORMAL_FRICTION, SPIN
+from tippetop.report.printed_numbers import NORMAL_FRICTION, SPIN
 from tippetop.report.readings import SETTLED, crossings, flip_time
 
 FIG_7_SPINS = (100.0, 115.0, 130.0, 145.0, 160.0)

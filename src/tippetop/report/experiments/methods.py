@@ -17,7 +17,7 @@ from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.runs import on_table
 from tippetop.report.listing import launch_state, listing_rates
 from tippetop.report.ode45 import ABSOLUTE, RELATIVE, dormand_prince_step, ode45
-from tippetop.report.quoted import MU, ROUGH_FRICTION, SPIN, TILT
+from tippetop.report.printed_numbers import MU, ROUGH_FRICTION, SPIN, TILT
 from tippetop.run import simulate
 
 EXPLICIT, IMPLICIT = ("ode45", "dop853"), ("radau", "bdf", "lsoda")

@@ -10,7 +10,7 @@ from tippetop.problem.frictions import ContensouFriction, ViscousFriction
 from tippetop.problem.hertz_patch import MATERIALS, hertz_patch_radius
 from tippetop.problem.presets import LEINE_GLOCKER, report_problem
 from tippetop.problem.problem import top_of
-from tippetop.report import quoted
+from tippetop.report import printed_numbers
 from tippetop.report.experiment import dataset, experiment
 from tippetop.report.experiments.dry import turning_time, with_friction
 from tippetop.report.experiments.real import LEINE
@@ -63,7 +63,7 @@ def _map(quick: bool) -> xr.Dataset:
     limit = critical_spin(SteadyKind.UPRIGHT, top_of(report_problem()))
     return dataset(
         {"radius": (radii, "m", "radius of the contact patch"), "spin": spins},
-        {"mu": MU, "window_s": MAP_WINDOW, "tilt_rad": quoted.TILT},
+        {"mu": MU, "window_s": MAP_WINDOW, "tilt_rad": printed_numbers.TILT},
         turning_time=(times, "s", "first tilt of more than pi/2", "radius", "spin"),
         least_force=(least, "N", "least normal force of all"),
         upright_limit=(limit, "rad s-1", "spin below which the upright spin is stable"),
@@ -89,8 +89,8 @@ def _viscous(quick: bool) -> xr.Dataset:
     radii = [
         hertz_patch_radius(load, radius, material, material) for material in MATERIALS.values()
     ]
-    at_launch = f"viscous coefficient of that patch at {quoted.SPIN:g} rad/s"
-    creep = [CREEP["hertz"] * MU / (r * quoted.SPIN) for r in radii]
+    at_launch = f"viscous coefficient of that patch at {printed_numbers.SPIN:g} rad/s"
+    creep = [CREEP["hertz"] * MU / (r * printed_numbers.SPIN) for r in radii]
     ratios = "growth rate of a patch over that of viscous friction"
     return dataset(
         {

@@ -11,7 +11,7 @@ from tippetop.problem.presets import REPORT_TABLE_1, report_problem
 from tippetop.problem.problem import Problem, top_of
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.listing import VARIABLES, listing_run
-from tippetop.report.quoted import END_OF_FIG_5, ROUGH_FRICTION, SPIN, TILT
+from tippetop.report.printed_numbers import END_OF_FIG_5, ROUGH_FRICTION, SPIN, TILT
 from tippetop.report.readings import (
     SETTLED,
     SHOWN,

@@ -8,7 +8,7 @@ import xarray as xr
 from tippetop.integrators.base import Array
 from tippetop.problem.presets import report_problem
 from tippetop.problem.problem import top_of
-from tippetop.report import quoted
+from tippetop.report import printed_numbers
 from tippetop.report.experiment import dataset, experiment, variable
 from tippetop.report.experiments.runs import WINDOW, on_table
 from tippetop.report.readings import SETTLED, crossings, flip_time
@@ -141,7 +141,7 @@ def _diagnostics(quick: bool) -> xr.Dataset:
     """Return gyroscopic balance, envelope of the nutation and effective potential along the
     report's main run.
     """
-    problem = on_table(report_problem(quoted.SPIN))
+    problem = on_table(report_problem(printed_numbers.SPIN))
     top = top_of(problem)
     run = simulate(problem, 10.0, samples=2001 if quick else 5001)
     axis, momentum = run["axis"].values, run["angular_momentum"].values
@@ -160,7 +160,7 @@ def _diagnostics(quick: bool) -> xr.Dataset:
             "instant": (run["time"].values[index], "s", "instant of the run"),
             "well_tilt": (tilts, "rad", "tilt"),
         },
-        {"spin_rad_per_s": quoted.SPIN},
+        {"spin_rad_per_s": printed_numbers.SPIN},
         tilt_diagnosed=(run["tilt"].values, "rad", "tilt", *over),
         balance=(xi, "kg m2 s-1", "xi = I1 phi' cos(theta) - I3 omega3", *over),
         balance_ratio=(xi / float(abs(axial[0])), "1", "xi over I3 omega3 at launch", *over),

@@ -4,7 +4,7 @@ A guard is a function of the state, of which a step has polynomials; the guard a
 So it is looked at in places that divide the step evenly. Between two of them it falls from positive
 to not positive, or it dips and returns (`brackets`), and then its zero is bracketed.
 `dormand_prince.suspect` tells in a loop over arrays which steps need no search. Taylor's method has
-the polynomials of its guards, and `tippetop.integrators.first_fall` searches them by bounds.
+the polynomials of its guards, and `tippetop.integrators.polynomial_zeros` searches them by bounds.
 """
 
 # translate module: numbers

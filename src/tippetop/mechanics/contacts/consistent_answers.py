@@ -44,7 +44,7 @@ from tippetop.mechanics.contacts.onset_forces import (
     find_onset,
 )
 from tippetop.mechanics.contacts.pair import ContactPair, apart, slip_apart, slips_of
-from tippetop.mechanics.contacts.pair_resolver import (
+from tippetop.mechanics.contacts.pair_resolution import (
     Resolution,
     both_begin_to_slip,
     first_begins_to_slip,
