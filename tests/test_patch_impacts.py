@@ -174,11 +174,11 @@ def test_a_touchdown_is_the_impact():
         assert following.events[1].impulse == impact(state, restitution, top).impulse
 
 
-@pytest.mark.parametrize("tilt", [0.0, 0.3])
+@pytest.mark.parametrize(("tilt", "spin"), [(0.0, 0.0), (0.3, 0.0), (0.3, 1e-10)])
 @pytest.mark.parametrize("restitution", [0.0, 0.5])
-def test_a_patch_that_does_not_drill_strikes_as_a_point_does(tilt, restitution):
+def test_a_patch_that_hardly_drills_strikes_as_a_point_does(tilt, spin, restitution):
     """In a plane Hertz's patch has Coulomb's friction, mu N, and slip ends without drilling."""
-    launch = tt.Launch(tilt=tilt, spin=0.0, gap=0.02, velocity=(0.3, 0.0, 0.0))
+    launch = tt.Launch(tilt=tilt, spin=spin, gap=0.02, velocity=(0.3, 0.0, 0.0))
     patch = tt.ContensouFriction(mu=0.3, patch_radius=1e-3, pressure="hertz")
     contact = tt.Contact(restitution=restitution)
     events = []
@@ -189,4 +189,4 @@ def test_a_patch_that_does_not_drill_strikes_as_a_point_does(tilt, restitution):
         run = tt.simulate(problem, 0.07, samples=2)
         assert run.attrs["status"] == "completed"
         events.append([float(run[name][1]) for name in ("event_impulse", "event_energy_lost")])
-    assert events[0] == pytest.approx(events[1], rel=1e-11)
+    assert events[0] == pytest.approx(events[1], rel=max(1e-11, 10.0 * spin))

@@ -2,7 +2,7 @@
 
 Read `mode` first: what a mode states. `contact_mode` is the mode of one or two closed contacts, by
 the status of each; `closed_contacts` is such contacts at an instant, of which `guards` are
-functions. `slip_onset` and `slip_end` are transforms of a contact mode: the first and the last
+functions. `slip_onset` and `slip_end_mode` are transforms of a contact mode: the first and the last
 moments of one of its velocities, by `slip_phase` and `slip_end_motion`. `flight` is free flight,
 and `face_mode` the motion on a flat face, over whose rim a body tips by `tip_onset`. `automaton`
 decides which mode follows: it asks `touching`, `collision`, `soonest_end`, `settling_flat` (how a

@@ -84,6 +84,7 @@ from tippetop.mechanics.impacts.struck_body import (
 )
 from tippetop.mechanics.impacts.struck_status import (
     BEGINS,
+    BOTH_END,
     HELD,
     SLIDES,
     StruckStatus,
@@ -566,16 +567,18 @@ class ImpactProcess:
                 raise Unsolved("an impact does not come to its end")
             cause, *contact = arc.guard.split(NUMBER_SIGN)
             number = int(contact[0]) if contact else BOTH
-            if cause == BRANCH and self._only_slips(moved, number):
+            if cause == BRANCH and self._has_ended(moved, number):
                 cause = ENDS
             if cause != BRANCH:
                 return ImpactPhase(self._landed(moved, status, cause, number), cause, number, steps)
             tops[number] = on_other_branch(tops[number])
 
-    def _only_slips(self, impulse: Impulse, number: int) -> bool:
-        """Return whether a patch does not drill: where the branch of slip ends, slip has ended."""
-        drilling = slips_at(self.body, self.body.velocities(impulse))[number][2]
-        return bool(abs(drilling) <= least_slip(self.body))
+    def _has_ended(self, impulse: Impulse, number: int) -> bool:
+        """Return whether slip, with what a patch drills, is too slow to be followed: a patch that
+        hardly drills has a branch of its law just before its slip ends.
+        """
+        slip = slips_at(self.body, self.body.velocities(impulse))[number]
+        return bool(size(slip) <= max(BOTH_END, least_slip(self.body)))
 
     def _landed(self, impulse: Impulse, status: StruckStatus, cause: str, number: int) -> Impulse:
         """Return the impulse where slip, or rolling, has ended, or what held it has given way."""
@@ -592,16 +595,25 @@ class ImpactProcess:
         self, impulse: Impulse, status: StruckStatus, ended: Sequence[int], is_rolling: bool
     ) -> Impulse:
         """Return the impulse after the one that ends what is left of the slip of some contacts, or
-        of rolling, and keeps the normal velocities.
+        of rolling, and keeps the normal velocities and what is held.
         """
         contacts, acts = self.body.contacts, acting(status.beside)
         goes_on = (1.0, 0.0, 0.0)
-        slips = [None if number in ended else goes_on for number in (0, 1)]
-        held = held_wrenches(contacts, acts, slips, None if is_rolling else goes_on)
+        slips: list[Slip | None] = [
+            None if number in ended or state == HELD else goes_on
+            for number, state in enumerate(status.slips)
+        ]
+        rolling = None if is_rolling or status.rolling == HELD else goes_on
+        held = held_wrenches(contacts, acts, slips, rolling)
         stopped = [at_first(contacts, number, wrench) for number, wrench in held]
         rows = [*stopped, *[at_first(contacts, number, NORMAL) for number in acts]]
         velocities = self.body.velocities(impulse)
-        right = [-inner(row, velocities) for row in stopped]
+        # Slip that friction which depends on its speed holds keeps its speed.
+        keeps = not is_set_valued(contacts.laws[0])
+        right = [
+            0.0 if keeps and any(wrench[:3]) else -inner(row, velocities)
+            for (_, wrench), row in zip(held, stopped, strict=True)
+        ]
         columns = [changed(contacts, row) for row in rows]
         matrix = [[inner(row, column) for column in columns] for row in rows]
         sizes = solve(matrix, [*right, *[0.0 for _ in acts]])

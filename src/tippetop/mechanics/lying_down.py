@@ -48,9 +48,9 @@ from tippetop.mechanics.vectors import Scalar, Vector, power
 
 LEFT_OUT = 1e-8
 """Time, in natural units, that the time left may be wrong by where a wobble is followed no further:
-below 1e-9 s on any body smaller than 9 cm. Far above it the end of a run would show it; a tenth of
-it, and a body that rocks from side to side turns round within so short times that rounding hides
-the slip that begins then.
+below 1e-9 s on earth where a body's radius is less than 9 cm. Far above it the end of a run would
+show it; a tenth of it, and a body that rocks from side to side turns round within so short times
+that rounding hides the slip that begins then.
 """
 
 FRICTION_ARM = 0.01

@@ -1,8 +1,8 @@
 """What each contact of a struck body does at some instant of an impact: slip, stick, or begin.
 
 The configuration is fixed, so that slip and rolling change per unit normal impulse at rates that
-depend on their directions alone, as in contact (see `onset_forces` and `pair_resolver`), with unit
-normal impulses for the forces that weight calls for.
+depend on their directions alone, as in contact (see `onset_forces` and `pair_resolution`), with
+unit normal impulses for the forces that weight calls for.
 """
 
 # translate module: numbers
