@@ -72,6 +72,29 @@ def test_the_page_says_what_newton_gives():
         )
     assert errors[*stiff, backwards, STEPS[-1]] < 0.05 < errors[*stiff, backwards, STEPS[0]]
     assert max(errors[*soft, "springs", backwards, step] for step in STEPS) > 1e6
+    chattering = [
+        errors["coulomb-roll", parameter, "springs", by_runs, step]
+        for parameter in ("launch.spin", "launch.tilt")
+        for step in STEPS
+    ]
+    assert 0.07 < min(chattering) < 0.08
+    assert 8.0 < max(chattering) < 8.2
+    tilted = "coulomb-roll", "launch.tilt", "stiff springs"
+    *longer, shortest = STEPS
+    for step in longer:
+        assert errors[*tilted, backwards, step] == pytest.approx(
+            errors[*tilted, by_runs, step], rel=0.05
+        )
+    assert errors[*tilted, backwards, shortest] < 0.08
+    assert errors[*tilted, by_runs, shortest] > errors[*tilted, by_runs, longer[-1]]
+    larger = list[bool]()
+    for parameter in ("launch.spin", "launch.tilt"):
+        for setting in ("springs", "stiff springs"):
+            slope = "slope", parameter, setting
+            assert errors[*slope, backwards, shortest] < 0.01
+            assert errors[*slope, backwards, shortest] < errors[*slope, backwards, STEPS[0]] / 5.0
+            larger += [errors[*slope, backwards, s] > errors[*slope, by_runs, s] for s in STEPS]
+    assert larger.count(False) == 1
 
 
 @pytest.mark.slow

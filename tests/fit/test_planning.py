@@ -78,6 +78,14 @@ def exact_data(top, plan, longest, noise):
     return ExactData(planned, noise)
 
 
+def test_a_plan_has_the_accuracy_that_is_asked_for_in_fits_of_made_data():
+    """A film whose error is within it by its derivatives only is passed over."""
+    noise = {"tip from the side": 5e-4}
+    for accuracy in (0.0325, 0.05):
+        ways = tt.plan_measurement(TOP, 1.0, ["friction.mu"], noise=noise, accuracy=accuracy)
+        assert all(way.error <= accuracy for way in ways)
+
+
 def test_plans_can_be_filmed():
     ways = tt.plan_measurement(TOP, 1.0, ["friction.mu"], accuracy=0.3)
     nutation = TOP.body.I3 * 155.0 / TOP.body.I1 / (2.0 * np.pi)

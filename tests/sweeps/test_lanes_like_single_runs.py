@@ -32,7 +32,7 @@ AIR = {
     )
 }
 FIELDS = {"level": {}, "slope": SLOPE, "air": AIR, "both": SLOPE | AIR}
-DAILY = ("drilling", "both")
+DAILY = (("drilling", "both"), ("dry", "slope"))
 
 
 @pytest.fixture(autouse=True)
@@ -44,7 +44,7 @@ def no_single_launches(monkeypatch):
 @pytest.mark.parametrize(
     ("law", "field"),
     [
-        pytest.param(*case, marks=() if case == DAILY else pytest.mark.slow)
+        pytest.param(*case, marks=() if case in DAILY else pytest.mark.slow)
         for case in product(LAWS, FIELDS)
     ],
 )

@@ -174,7 +174,7 @@ def plan_measurement(
         for plan in ways:
             if plan.error <= accuracy:
                 confirmed = _confirmed(problem, fields, one, plan, deviations[quantity])
-                if confirmed is not None:
+                if confirmed is not None and confirmed.error <= accuracy:
                     plans.append(confirmed)
                     break
     if not plans:

@@ -5,5 +5,5 @@ say which of them are stable, and `prediction` where a launch ends. `nutation`, 
 `nutation_decay`, `averaging` and `slow_time` have the slow flow under weak friction. `level` has
 spins about a horizontal axis, `rolling` circles and straight lines of bodies whose contact sticks,
 and `spectra` judges single states. `sleeping`, `stem`, `drilling` and `resting_center` treat other
-bodies and friction; `overview`, `prospects` and `advice` collect the results for people.
+bodies and friction; `outlook`, `prospects` and `advice` collect the results for people.
 """
