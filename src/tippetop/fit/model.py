@@ -32,6 +32,11 @@ derivative of a phase of a thousand radians changes them by 1e-3, rounding of ru
 ROUNDED = 1e-12
 """Change of the values over that step, relative to them, below which it is rounding of runs."""
 
+GOLDEN_RATIO = (5.0**0.5 - 1.0) / 2.0
+"""Distance of the places that are compared, in their range and modulo it: equal distances may be
+whole numbers of steps, and would hide them.
+"""
+
 SECANT, SECANT_RUNS, SECANT_RUNS_OF_SEARCH = 0.03, 8, 4
 """How far beside a problem, relative to the scale of a field, the times of its events are compared,
 and in how many runs: of these the errors follow. A search needs the slope alone, and fewer.
@@ -216,7 +221,7 @@ class Model:
             height 1 from its mean, sqrt(12).
         """
         slopes, heights = np.zeros((len(self.data), len(numbers))), np.zeros(len(self.data))
-        places = np.linspace(-1.0, 1.0, runs)
+        places = 2.0 * ((np.arange(runs) + 0.5) * GOLDEN_RATIO % 1.0) - 1.0
         for field, scale in enumerate(self.scales(numbers)[: len(self.fields)]):
             rows, seen = list[Array](), list[float]()
             for place in places:
