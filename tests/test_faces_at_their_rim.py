@@ -101,14 +101,23 @@ def weakening(slip, angular_velocity, mu, eps, speed):
 
 
 def test_a_law_that_falls_again_is_asked_at_small_slip() -> None:
-    """At the speed of the body its force would tip nothing."""
-    friction = weakening(mu=0.6, eps=1e-2, speed=0.1)
-    run, solution = tt.simulate(launched(friction, 0.5, 51.0), 0.5, samples=2, dense=True)
-    for time in run["event_time"].values[run["event_kind"].values == "rolls on its rim"][:1]:
-        speed, drilled = speeds(solution, float(time))
-        slip = math.sqrt(speed**2 - drilled**2)
-        force = 0.6 * slip / math.hypot(slip, 1e-2) / (1 + slip**2 / 0.1**2)
-        assert HALF * force == pytest.approx(RADIUS, rel=1e-9)
+    """The body rolls on its rim at the least outward slip at which h f = a1, though the law tips it
+    at its own speed, too, and no longer at slips beyond.
+    """
+    law = weakening(mu=0.6, eps=1e-2, speed=1.0)
+    run, solution = tt.simulate(launched(law, 0.5, 51.0), 0.1, samples=2, dense=True)
+    (time,) = run["event_time"].values[run["event_kind"].values == "rolls on its rim"]
+    speed, drilled = speeds(solution, float(time))
+
+    def moved(slip: float) -> float:
+        return HALF / RADIUS * 0.6 * slip / (math.hypot(slip, 1e-2) * (1.0 + slip**2))
+
+    least, largest = 0.0, 0.1
+    for _ in range(50):
+        middle = 0.5 * (least + largest)
+        least, largest = (middle, largest) if moved(middle) < 1.0 else (least, middle)
+    assert moved(speed) > 1.0 > moved(1.0)
+    assert math.sqrt(speed**2 - drilled**2) == pytest.approx(least, rel=1e-9)
 
 
 @pytest.mark.parametrize("mu", [0.6, 1.0])
@@ -121,6 +130,27 @@ def test_an_impact_of_a_face_that_drills_rolls_on_its_rim(mu: float) -> None:
     assert float(run["energy_error"]) < 1e-13
     speed, drilled = speeds(solution, 0.2)
     assert speed == pytest.approx(drilled, rel=1e-13)
+
+
+@pytest.mark.parametrize("spin", [50.0, 50.0 * (1.0 - 1e-13)])
+def test_a_face_that_lands_where_its_rim_begins_to_slip_slides_on(spin: float) -> None:
+    """A fall takes the time v_n / g, and its impact as much slip as sliding takes in that time."""
+    dry, body = tt.CoulombFriction(mu=0.6), peg(2.0)
+    launch = tt.Launch(tilt=0.0, spin=spin, velocity=(0.5, 0.0, 0.0), gap=0.02)
+    slides = tt.simulate(launched(dry, 0.5, spin, body=body), 0.2, samples=2)
+    lands = tt.simulate(launched(dry, 0.0, 0.0, body=body, launch=launch), 0.2, samples=2)
+    assert slides.attrs["status"] == lands.attrs["status"] == "at_rest"
+    assert float(lands["end_time"]) == pytest.approx(float(slides["end_time"]), rel=1e-9)
+
+
+def test_dry_friction_on_a_face_only_rescales_time() -> None:
+    """Velocities 1e-6 times as fast change at times 1e-6 times as late."""
+    dry, scale = tt.CoulombFriction(mu=0.6), 1e-6
+    fast = tt.simulate(launched(dry, 0.3, 60.0), 0.3, samples=2)
+    slow = tt.simulate(launched(dry, 0.3 * scale, 60.0 * scale), 0.3 * scale, samples=2)
+    assert slow["event_kind"].values.tolist() == ["pressure at the rim", "rolls on its rim"]
+    assert fast["event_kind"].values.tolist() == slow["event_kind"].values.tolist()
+    np.testing.assert_allclose(slow["event_time"], scale * fast["event_time"], rtol=1e-9)
 
 
 def test_where_a_slope_makes_the_slip_of_the_rim_faster_the_run_says_so() -> None:

@@ -28,7 +28,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple, Self
 
 from tippetop.contact.collision import SLOWEST_REBOUND
-from tippetop.contact.face_mode import TIPPING, FaceMode, mode_at_rim
+from tippetop.contact.face_mode import TIPPING, FaceMode, PressedAtRim, mode_at_rim
 from tippetop.contact.impact import Impact, impact, restored_impact
 from tippetop.contact.mode import FAILURE
 from tippetop.integrators.unnamed import unnamed_integrator
@@ -71,6 +71,9 @@ begins: its energy is below rounding.
 
 MOST_STRIKES = 200
 """Strikes of the rim in one impact, after which a run is given up."""
+
+MOST_MODES = 200
+"""Modes of a pressed face in one impact, after which a run is given up."""
 
 NOT_TIPPED = (
     "friction has moved the pressure to a point of the rim at which slip only begins, and the slope"
@@ -200,7 +203,11 @@ class FaceStrike:
         slip = slip_of_face(state, top)
         moving = only_slipping(state, slip, state.momentum[2])
         elapsed, steps, tips = 0.0, 0, False
-        while elapsed < span and not tips:
+        for _ in range(MOST_MODES):
+            if elapsed >= span or tips:
+                part = 1.0 - elapsed / compression if tips else -restitution
+                after = self._with_turning(state, moving, part)
+                return PressedFace(after, elapsed, compression, steps, tips)
             if is_set_valued(top.friction) and self._rests(moving, -sinking):
                 moving = only_slipping(state, (0.0, 0.0), 0.0)
                 held = replace(mode, slips=False).forces(mode.numbers(moving))
@@ -211,7 +218,8 @@ class FaceStrike:
                     continue
                 factor = SLOWEST_ON_FACE * sinking * (x * x + y * y) ** -0.5
                 moving = only_slipping(state, (factor * x, factor * y), 0.0)
-            if mode.tipping(mode.numbers(moving)) <= 0.0:
+            at_rim = isinstance(mode, PressedAtRim)
+            if not at_rim and mode.tipping(mode.numbers(moving)) <= 0.0:
                 tips, mode = self._struck_or_goes_on(mode, moving)
                 continue
             for segment in mode.segments(elapsed, moving, span, unnamed_integrator()):
@@ -220,9 +228,9 @@ class FaceStrike:
                     raise Unsolved(f"in an impact of a face {segment.mode_end.detail}")
                 if segment.mode_end is not None and segment.mode_end.cause == TIPPING:
                     tips, mode = self._struck_or_goes_on(mode, moving)
-        part = 1.0 - elapsed / compression if tips else -restitution
-        after = self._with_turning(state, moving, part)
-        return PressedFace(after, elapsed, compression, steps, tips)
+        raise Unsolved(
+            "in an impact of a face the pressure comes to the rim and leaves it for ever"
+        )
 
     def at_rim(self, pressed: PressedFace, restitution: float, most: float) -> Impact:
         """Return what an impulse at the rim does after one that has pressed the face.

@@ -57,8 +57,10 @@ stage the ratio of slip and drilling would lose digits; a much shorter one costs
 """
 
 AT_LIMIT = 1e-10
-"""Reserve of the rim, in natural units, that is rounding where the outward slip has come to that at
-which a body tips: the slip is a difference of squares.
+"""Part of its terms by which a reserve of the rim may differ from zero by rounding where the
+outward slip has come to that at which a body tips: the slip is a difference of squares. Far above
+it slip that has not come there yet would count as come; below it a guard that has just fallen
+through zero would fall again.
 """
 
 LEAST_TIME = 1e-12
@@ -300,16 +302,17 @@ def mode_at_rim(mode: FaceMode, state: State) -> FaceMode | None:
     From a slip at which friction at the rim could just tip it, a body tips only if that friction
     makes the slip faster.
     """
-    at_rim, y = PressedAtRim.of(mode, state), mode.numbers(state)
-    if at_rim.tipping(y) > AT_LIMIT:
+    at_rim, y, top = PressedAtRim.of(mode, state), mode.numbers(state), mode.top
+    speed, is_dry = face_speed(state.velocity[:2], state.momentum, top), is_set_valued(top.friction)
+    terms = speed * speed if is_dry else face_radii(top.surface)[1]
+    if at_rim.tipping(y) > AT_LIMIT * terms:
         return at_rim
-    if not isinstance(mode, PressedAtRim) and tipping_direction(state, mode.top) is not None:
+    if not isinstance(mode, PressedAtRim) and tipping_direction(state, top) is not None:
         return None
-    outward = max(0.0, float(outward_square(SlidingState.unpack(y), mode.top)))
-    slip = 0.0 if is_set_valued(mode.top.friction) else outward**0.5
-    held = HeldAtRim(mode.top, mode.law_type, slip=slip)
+    outward = max(0.0, float(outward_square(SlidingState.unpack(y), top)))
+    held = HeldAtRim(top, mode.law_type, slip=0.0 if is_dry else outward**0.5)
     split = held.split(y)
-    if split.on_face <= AT_LIMIT:
+    if split.on_face <= AT_LIMIT * split.terms:
         return at_rim
     return held if split.at_point <= 0.0 else None
 

@@ -309,6 +309,8 @@ class PressureSplit(NamedTuple):
     """
     on_face: Scalar
     """The same where the pressure is that of the face."""
+    terms: Scalar
+    """Sum of the sizes of the terms of `on_face`, m^2/s^3."""
     forces: FaceForces
     """The forces that keep the outward slip: a share of each."""
 
@@ -349,9 +351,12 @@ def held_at_rim(state: SlidingState, slip: Scalar, law_type: Any, top: Top) -> P
     face = sliding_on_face(axis, momentum, (u, v), law_type, top)
     free = u * p + v * q
     at_point = rate(free - slip * (outer * normal / height), couple)
-    on_face = rate(free + u * face.force[0] + v * face.force[1], couple + face.torque)
+    power = u * face.force[0] + v * face.force[1]
+    on_face = rate(free + power, couple + face.torque)
+    terms = abs(rate(free, 0.0)) + abs(rate(power, 0.0))
+    terms = terms + abs(rate(0.0, couple)) + abs(rate(0.0, face.torque))
     share = at_point / (at_point - on_face)
     east = share * face.force[0] + (1.0 - share) * point[0]
     north = share * face.force[1] + (1.0 - share) * point[1]
     forces = forces_on_face(axis, (east, north), normal, share * face.torque, top)
-    return PressureSplit(at_point, on_face, forces)
+    return PressureSplit(at_point, on_face, terms, forces)
