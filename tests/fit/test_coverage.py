@@ -77,7 +77,7 @@ def experiment(seed):
     return scores, comparison.differences["other"] - comparison.differences["true"], fits
 
 
-@pytest.mark.parametrize("which", seed_ranges(check=0, sample=6, claim=200, size=194))
+@pytest.mark.parametrize("which", seed_ranges(check=0, sample=3, claim=200, size=197))
 def test_intervals_cover_the_truth(which):
     """Seeds 5, 40 and 57 begin beside other minima. Of 200 films one, 59, ends in another minimum,
     and its fit says that it does not describe the data.
