@@ -29,9 +29,9 @@ LAMINAR_DISK, LAMINAR_SPHERE = 3e5, 5e4
 class Air(Part):
     """Air that brakes a body: it resists turning and moving, linearly and quadratically.
 
-    The couple is -(linear + quadratic |w|) w for the part w of the angular velocity along the axis,
-    and across it, and the force -(linear + quadratic |u|) u for the velocity u of the centre of
-    mass.
+    The couple is ``-(linear + quadratic |w|) w`` for the part w of the angular velocity along the
+    axis, and across it, and the force ``-(linear + quadratic |u|) u`` for the velocity u of the
+    centre of mass.
 
     Attributes
     ----------
