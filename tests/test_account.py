@@ -192,6 +192,9 @@ def test_a_cylinder_that_drills_comes_to_roll_on_its_rim() -> None:
     account = describe(run)
     assert named(account, "pressed_at_rim") == {"time": times["pressure at the rim"]}
     assert named(account, "rolls_on_rim") == {"time": times["rolls on its rim"]}
+    ended = {"time": float(run["end_time"]), "spin": float(run["final_spin"])}
+    assert named(account, "rolls_flat") == ended
+    assert "lies_flat_and_spins" not in names(account)
 
 
 def test_two_balls_stand_on_the_ball_that_touches() -> None:

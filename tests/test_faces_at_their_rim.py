@@ -153,11 +153,15 @@ def test_dry_friction_on_a_face_only_rescales_time() -> None:
     np.testing.assert_allclose(slow["event_time"], scale * fast["event_time"], rtol=1e-9)
 
 
-def test_where_a_slope_makes_the_slip_of_the_rim_faster_the_run_says_so() -> None:
-    problem = launched(tt.CoulombFriction(mu=0.6), 0.5, 51.0)
-    run = tt.simulate(problem.replace({"table": tt.Table(slope=0.1)}), 0.3, samples=2)
+@pytest.mark.parametrize(
+    "cause", [{"table": tt.Table(slope=0.1)}, {"air": tt.Air(axial_linear=1e-9)}]
+)
+def test_where_a_slope_or_air_makes_the_slip_of_the_rim_faster_the_run_says_so(cause) -> None:
+    problem = launched(tt.CoulombFriction(mu=0.6), 0.5, 51.0, **cause)
+    run = tt.simulate(problem, 0.3, samples=2)
     assert run.attrs["status"] == "failed"
-    assert "the slope or the air makes it faster" in run.attrs["message"]
+    assert "the slope of the table, or a torque of the air about the axis" in run.attrs["message"]
+    assert "with table.slope = 0" in run.attrs["message"]
 
 
 @pytest.mark.parametrize("pressure", ["uniform", "rim", "ellipsoidal"])

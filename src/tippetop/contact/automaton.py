@@ -694,7 +694,8 @@ class Automaton:
         assert isinstance(mode, FaceMode)
         face = FaceMode(mode.top, mode.law_type)
         if mode != face and face.tipping(face.numbers(end.state)) > 0.0:
-            return Transition((), face, end.state)
+            slips = Event(EventKind.SLIP, time, surface=mode.top.number)
+            return Transition((slips,) if isinstance(mode, HeldAtRim) else (), face, end.state)
         return self._tip_sliding(mode, time, end.state, ())
 
     def _tip_sliding(
@@ -712,7 +713,7 @@ class Automaton:
         if isinstance(following, HeldAtRim):
             event = Event(EventKind.ROLLS_ON_RIM, time, surface=mode.top.number)
             return Transition((*events, event), following, state)
-        if not isinstance(mode, PressedAtRim):
+        if isinstance(mode, HeldAtRim) or not isinstance(mode, PressedAtRim):
             event = Event(EventKind.PRESSED_AT_RIM, time, surface=mode.top.number)
             events = (*events, event)
         return Transition(events, following, state)

@@ -77,8 +77,9 @@ MOST_MODES = 200
 
 NOT_TIPPED = (
     "friction has moved the pressure to a point of the rim at which slip only begins, and the slope"
-    " or the air makes it faster: it is not known how the body tips there; with less friction, or"
-    " another contact.face_pressure, it goes on"
+    " of the table, or a torque of the air about the axis, makes that slip faster: it is not known"
+    " how the body tips there; it goes on with table.slope = 0 and, in air, with air.axial_linear ="
+    " 0 and air.axial_quadratic = 0"
 )
 """Detail of the status where it is not known how a body goes on upon the rim of its face."""
 

@@ -223,7 +223,11 @@ class PressedAtRim(FaceMode):
     """
 
     slip: Scalar = 1.0
-    """The outward slip of a point of the rim at which the body would tip (`slip_that_tips`)."""
+    """The outward slip of a point of the rim at which the body would tip (`slip_that_tips`), m/s.
+
+    It is found once, with the drilling at which the mode begins: a law that depends on the angular
+    velocity is not asked again while drilling changes.
+    """
 
     further: ClassVar[int] = 1
 
@@ -270,7 +274,8 @@ class HeldAtRim(PressedAtRim):
     could just tip it (see `tippetop.mechanics.face_motion.held_at_rim`).
 
     Under dry friction that point rests, and the body rolls on its rim with its axis vertical,
-    without loss: the limit of rolling on the rim at a small tilt.
+    without loss: the limit of rolling on the rim at a small tilt. The slip is that with which the
+    mode begins: a law that depends on the angular velocity is not asked again.
     """
 
     @property

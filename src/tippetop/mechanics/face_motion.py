@@ -281,7 +281,9 @@ def rim_reserve(state: SlidingState, slip: Scalar, top: Top) -> Scalar:
     could hold the pressure at the rim, where that of the face has come to the rim.
 
     Dry friction can from the start of that slip, s. Other laws are asked for their force at a slip
-    without a root, (s0 + s^2 / s0) / 2: it is s at s = s0, and above it elsewhere.
+    without a root, (s0 + s^2 / s0) / 2: it is s at s = s0, and above it elsewhere. Under a law
+    whose force falls again at faster slip, a slip that falls from beyond its peak therefore reaches
+    the upper limit of the slips that tip the body later than it should.
 
     Parameters
     ----------

@@ -262,6 +262,11 @@ def _is_on_face(facts: Facts) -> bool:
     return on_face
 
 
+def _rolls_on_rim(facts: Facts) -> bool:
+    """Return whether the body rolls on the rim of its face, upright, at the end of its run."""
+    return bool(facts.events) and facts.events[-1].kind is EventKind.ROLLS_ON_RIM
+
+
 def _sticks_since(facts: Facts) -> float:
     """Return the time since which the top rolls without slip or loss to the end, s, or nan."""
     if not spins_for_ever(top_of(facts.problem)) or facts.status is not Status.COMPLETED:
@@ -308,6 +313,8 @@ def _end(facts: Facts) -> list[Clause]:
         clauses.append(Clause("lifts_off", numbers, "end"))
     elif status is not Status.COMPLETED:
         clauses.append(_ended_early(facts))
+    elif _rolls_on_rim(facts):
+        clauses.append(Clause("rolls_flat", {"time": time, "spin": abs(spin)}, "end"))
     elif on_face:
         name = "lies_flat" if abs(spin) < LEAST_SPIN else "lies_flat_and_spins"
         clauses.append(Clause(name, {"time": time, "spin": abs(spin)}, "end"))
