@@ -12,6 +12,8 @@ from tippetop.fit.standing import CLOSE, least_passing
 
 CREEP = tt.ContensouFriction(mu=0.3, patch_radius=5e-4)
 
+BALL = tt.design_bowl(radius=0.015, density=1240.0, eccentricity=0.15, inertia_ratio=1.2)
+
 
 def volume(profile):
     """Return the volume that a closed polygon of (distance, height) sweeps about the axis, m^3."""
@@ -170,6 +172,7 @@ def test_a_bound_on_the_mass_is_kept():
         ({"wall": "1 s"}, "wall: 1 s is a time"),
         ({"stem": -1e-3}, "stem: -0.001"),
         ({"goal": "fastest", "spin": -5.0}, "spin: -5"),
+        ({"spin": 150.0}, "spin: 150 has no effect"),
         ({"tilt": 0.0}, "tilt: 0"),
         ({"body": "x"}, "body: 'x'"),
     ],
@@ -177,3 +180,27 @@ def test_a_bound_on_the_mass_is_kept():
 def test_what_cannot_be_improved_is_refused(arguments, sentence):
     with pytest.raises(tt.InvalidInput, match=sentence):
         tt.improve(**{"body": tt.presets.REPORT, **arguments})
+
+
+@pytest.mark.parametrize(
+    ("body", "stated", "density"),
+    [
+        (BALL, None, 1240.0),
+        (BALL, 800.0, 800.0),
+        (tt.Body.turned(BALL), None, 700.0),
+        (tt.Body.turned(BALL), "brass", 8500.0),
+    ],
+)
+def test_the_material_is_the_stated_one_or_that_of_the_workpiece(
+    body, stated, density, monkeypatch
+):
+    densities = []
+
+    def proposals(family, entrants):
+        densities.append(family.density)
+        raise InterruptedError
+
+    monkeypatch.setattr(BowlFamily, "proposals", proposals)
+    with pytest.raises(InterruptedError):
+        tt.improve(body, density=stated)
+    assert densities == [density]

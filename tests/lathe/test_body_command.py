@@ -140,7 +140,7 @@ def test_files_are_written_once(files):
         ("top.toml --plot a.txt", "--plot: 'a.txt' is not"),
         ("top.toml --stl a.3mf", "--stl: 'a.3mf' is not"),
         ("top.toml --stl ball.toml.stl --json --toml", "--toml: beside --json asks for two"),
-        ("bowl.csv", "density is missing"),
+        ("bowl.csv", "--density is missing"),
         ("bowl.csv --density 700 --unit ft", "unit: 'ft' is not"),
         ("bowl.csv --density -1", "density: -1 is not"),
         ("bowl.csv --density 700 --toml", "profile: a sphere of which only tilts"),

@@ -15,11 +15,18 @@ from tippetop.cli.options import (
     Json,
     density_in,
     density_option,
-    number_option,
     write_figure,
 )
 from tippetop.cli.problem import commented_toml
 from tippetop.cli.terminal import facts, listing, show, show_json, spelled
+from tippetop.cli.workpieces import (
+    Axis,
+    Frame,
+    Tolerance,
+    Unit,
+    UpsideDown,
+    workpiece_in,
+)
 from tippetop.support.errors import Described, InvalidInput
 from tippetop.support.files import place_for, require_ending
 
@@ -31,11 +38,6 @@ FILE_ENDINGS = {
     "urdf": (".urdf",),
 }
 """Accepted suffixes of files."""
-
-SURELY_MOVED, DOUBTFUL = 1e-9, 10.0
-"""Distance in sizes of the profile above which it is not rounding of floats; and in roundings of
-the profile's numbers up to which an arc's centre beside the axis may be due to them.
-"""
 
 SPIN = 155.0
 """Axial spin of a launch in a file that is written, rad/s: that of the report."""
@@ -56,38 +58,11 @@ def body(
         str | None,
         density_option("Density"),
     ] = None,
-    unit: Annotated[
-        str | None,
-        typer.Option(
-            help="Unit of the profile's numbers: m, cm, mm or in. By default m in .toml and .csv,"
-            " mm in meshes, and the physical size of a drawing; a heading of points may have it."
-        ),
-    ] = None,
-    axis: Annotated[
-        str | None,
-        typer.Option(
-            help="Axis of a drawing, such as x=10 in its numbers, or x or y for its direction; of a"
-            " surface x, y or z. Sought by default."
-        ),
-    ] = None,
-    frame: Annotated[
-        bool | None,
-        typer.Option(
-            "--frame/--no-frame",
-            help="Whether a rectangle around all else in a drawing is a frame, or the body.",
-        ),
-    ] = None,
-    upside_down: Annotated[
-        bool, typer.Option("--upside-down", help="Turn the body over: what is below comes up.")
-    ] = False,
-    tolerance: Annotated[
-        float | None,
-        number_option(
-            float,
-            "Largest distance of the body from points that arcs are fitted to, in sizes of it;"
-            " 0.0001 by default, 0 to fit none.",
-        ),
-    ] = None,
+    unit: Unit = None,
+    axis: Axis = None,
+    frame: Frame = None,
+    upside_down: UpsideDown = False,
+    tolerance: Tolerance = None,
     whole: Annotated[
         bool, typer.Option("--whole", help="Accept incomplete surfaces as if they were complete.")
     ] = False,
@@ -124,22 +99,21 @@ def body(
     from rich.markup import escape  # noqa: PLC0415 - slow to import
 
     from tippetop.fit.standing import drilling_launch  # noqa: PLC0415 - slow to import
-    from tippetop.lathe.files import read_with_remarks  # noqa: PLC0415
 
     requested = {"plot": plot, "stl": stl, "3mf": three_mf, "mjcf": mjcf, "urdf": urdf}
     files = {kind: path for kind, path in requested.items() if path is not None}
     for kind, path in files.items():
         require_ending(f"--{kind}", path, FILE_ENDINGS[kind])
         place_for(path, force)
-    options = {
-        "density": density_in(density),
-        "unit": unit,
-        "tolerance": tolerance,
-    }
-    stated = {name: value for name, value in options.items() if value is not None}
-    workpiece, remarks = read_with_remarks(file, axis=axis, frame=frame, **stated)
-    if upside_down:
-        workpiece = workpiece.turned_over()
+    workpiece, remarks = workpiece_in(
+        file,
+        upside_down,
+        density=density_in(density),
+        unit=unit,
+        axis=axis,
+        frame=frame,
+        tolerance=tolerance,
+    )
     if as_toml and as_json:
         raise InvalidInput(
             "--toml", Described("beside --json"), "one of the two", "asks for two formats"
@@ -148,7 +122,7 @@ def body(
         turned = tt.Body.turned(workpiece, whole=whole)
         written = commented_toml(drilling_launch(turned, SPIN))
     else:
-        summary = {"remarks": [*remarks, *_fit(workpiece)], **_summary(workpiece, whole, runs)}
+        summary = {"remarks": remarks, **_summary(workpiece, whole, runs)}
     outputs = [_write(workpiece, path, force, whole) for path in files.values()]
     not_mapped = list(dict.fromkeys(remark for _, remarks in outputs for remark in remarks))
     paths = [path for written_paths, _ in outputs for path in written_paths]
@@ -161,37 +135,6 @@ def body(
         show(*_sentences(summary, upside_down), *map(escape, not_mapped), files=paths)
     if not as_toml and summary["trouble"]:
         raise typer.Exit(2)
-
-
-def _fit(workpiece: "tt.Workpiece") -> list[str]:
-    """Return remarks on the fit of the profile to points, and on what its digits leave open."""
-    from tippetop.lathe.rounding import usual_rounding  # noqa: PLC0415 - slow to import
-    from tippetop.lathe.workpiece import UNITS  # noqa: PLC0415
-
-    fit, unit, remarks = workpiece.fit, 1e3 * UNITS[workpiece.unit], list[str]()
-    if fit.edges != fit.stated or fit.deviation:
-        remarks.append(
-            f"{fit.edges} arcs and lines for the {fit.stated} edges of the profile, at most"
-            f" {1e3 * workpiece.deviation:.2g} mm from its points."
-        )
-    else:
-        pairs = zip(fit.points, workpiece.profile, strict=True)
-        moved = max(math.dist(point[:2], stated[:2]) for point, stated in pairs)
-        if moved > SURELY_MOVED * workpiece.outline.size / UNITS[workpiece.unit]:
-            remarks.append(
-                f"Points of the profile are moved by up to {unit * moved:.2g} mm, as their digits"
-                " allow, so that arcs are centred on the axis (--tolerance 0 takes them as stated)."
-            )
-    digits = DOUBTFUL * usual_rounding(workpiece.profile) * unit
-    for edge in workpiece.outline.edges:
-        beside = 1e3 * abs(edge.center.real) if edge.turn else 0.0
-        if 1e3 * SURELY_MOVED * workpiece.outline.size < beside <= digits:
-            remarks.append(
-                f"An arc of radius {1e3 * abs(edge.radius):.4g} mm has its centre {beside:.2g} mm"
-                " beside the axis, which the rounding of its numbers may have made: it is taken as"
-                " stated, as a ring. Write them with more digits to have a ball."
-            )
-    return remarks
 
 
 def _summary(workpiece: "tt.Workpiece", whole: bool, runs: bool) -> dict[str, Any]:

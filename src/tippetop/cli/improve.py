@@ -1,7 +1,7 @@
 """`tippetop improve`: a top like a body that turns over at less spin, sooner, or stands longer."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any
@@ -22,7 +22,15 @@ from tippetop.cli.options import (
 )
 from tippetop.cli.problem import commented_toml
 from tippetop.cli.terminal import facts, show, show_json
-from tippetop.support.errors import MISSING, Described, InvalidInput
+from tippetop.cli.workpieces import (
+    Axis,
+    Frame,
+    Tolerance,
+    Unit,
+    UpsideDown,
+    workpiece_in,
+)
+from tippetop.support.errors import MISSING, Described, InvalidInput, within_part
 from tippetop.support.files import place_for, require_ending
 
 
@@ -45,14 +53,22 @@ def improve(
         ),
     ] = None,
     density: Annotated[
-        str | None, density_option("Density of the material (by default the file's, or 700)")
+        str | None,
+        density_option("Density of the material (by default the file's; 700 for a preset)"),
     ] = None,
+    unit: Unit = None,
+    axis: Axis = None,
+    frame: Frame = None,
+    upside_down: UpsideDown = False,
+    tolerance: Tolerance = None,
     mass: Annotated[
         str | None, typer.Option(metavar=NUMBER, help="Largest mass, kg, or as in '20 g'.")
     ] = None,
     radius: Annotated[
         str | None,
-        typer.Option(metavar=NUMBER, help="Radius of the ball, m, or as in '15 mm'; the body's."),
+        typer.Option(
+            metavar=NUMBER, help="Radius of the ball, m, or as in '15 mm'; by default the body's."
+        ),
     ] = None,
     wall: Annotated[
         str, typer.Option(metavar=NUMBER, help="Least thickness of the bowl, m or with a unit.")
@@ -78,7 +94,9 @@ def improve(
 
     What is shown was seen in runs: a minute or two of them.
     """
-    from tippetop.fit.standing import drilling_launch  # noqa: PLC0415 - slow to import
+    from rich.markup import escape  # noqa: PLC0415 - slow to import
+
+    from tippetop.fit.standing import drilling_launch  # noqa: PLC0415
 
     if as_toml and as_json:
         raise InvalidInput(
@@ -91,21 +109,35 @@ def improve(
             place_for(path, force)
             files[kind] = path
     material = density_in(density)
-    body = _body(file, preset, material)
-    if material is None:
-        material = body.density if isinstance(body, tt.Workpiece) else 700.0
-    better = tt.improve(
-        body,
-        goal,  # type: ignore[arg-type]
-        spin=number_of("--spin", spin, "rad s-1"),
-        density=material,
-        mass=number_of("--mass", mass, "kg"),
-        radius=number_of("--radius", radius, "m"),
-        wall=number_of("--wall", wall, "m") or 0.0,
-        stem=number_of("--stem", stem, "m") or 0.0,
-        whole=completed,
-        trials=trials,
+    body, remarks = _body(
+        file,
+        preset,
+        completed,
+        {
+            "density": material,
+            "unit": unit,
+            "axis": axis,
+            "frame": frame,
+            "upside_down": upside_down,
+            "tolerance": tolerance,
+        },
     )
+    if not (as_json or as_toml):
+        # The search takes minutes: a file that was misread is seen before.
+        show(*map(escape, remarks))
+    stated = {
+        "spin": number_of("--spin", spin, "rad s-1"),
+        "density": material,
+        "mass": number_of("--mass", mass, "kg"),
+        "radius": number_of("--radius", radius, "m"),
+        "wall": number_of("--wall", wall, "m"),
+        "stem": number_of("--stem", stem, "m"),
+        "trials": trials,
+    }
+    try:
+        better = tt.improve(body, goal, whole=completed, **stated)  # type: ignore[arg-type]
+    except InvalidInput as error:
+        raise _of_options(error, ("goal", *stated)) from None
     if plot is not None:
         from tippetop.figures.section import section  # noqa: PLC0415 - slow to import
 
@@ -121,22 +153,41 @@ def improve(
         names = [one.name for one in fields(better) if one.name not in ("body", "workpiece")]
         numbers = {name: getattr(better, name) for name in names}
         paths = {kind: str(path) for kind, path in files.items()}
-        show_json({**numbers, "mass": better.body.mass, "body": better.body, "files": paths})
+        top = {"mass": better.body.mass, "body": better.body}
+        show_json({"remarks": remarks, **numbers, **top, "files": paths})
     else:
         show(str(better), facts(_rows(better)), files=files.values())
 
 
-def _body(file: Path | None, preset: str | None, density: float | None) -> Any:
-    """Return the body to begin with: of a file, or a preset."""
-    from tippetop.lathe.files import read_with_remarks  # noqa: PLC0415 - slow to import
+def _body(
+    file: Path | None, preset: str | None, completed: bool, options: dict[str, Any]
+) -> tuple[Any, list[str]]:
+    """Return the body to begin with, of a file or a preset, and remarks on how a file was read."""
+    from tippetop.fit.standing import drilling_launch  # noqa: PLC0415 - slow to import
+    from tippetop.problem.implausible import warn_if_implausible  # noqa: PLC0415
 
-    if (file is None) == (preset is None):
-        shown = MISSING if file is None else str(file)
-        raise InvalidInput("file", shown, "the file of a body, or --preset with its name")
-    if file is None:
-        return tt.presets.body(str(preset))
-    stated: dict[str, Any] = {} if density is None else {"density": density}
-    return read_with_remarks(file, **stated)[0]
+    if file is not None and preset is not None:
+        raise InvalidInput("file", str(file), "one of the two", "is stated beside --preset")
+    if file is not None:
+        workpiece, remarks = workpiece_in(file, **options)
+        warn_if_implausible(drilling_launch(tt.Body.turned(workpiece, whole=completed)))
+        return workpiece, remarks
+    if preset is None:
+        raise InvalidInput("file", MISSING, "the file of a body, or --preset with its name")
+    for name, value in options.items():
+        if name != "density" and value not in (None, False):
+            option = f"--{name.replace('_', '-')}"
+            raise InvalidInput(option, value, "", "is only for a file", "leave it out")
+    return tt.presets.body(preset), []
+
+
+def _of_options(error: InvalidInput, names: Sequence[str]) -> InvalidInput:
+    """Return a refusal of arguments with the names of the options that state them."""
+    fields = error.field.split(", ")
+    if not set(fields) <= set(names):
+        return error
+    error.field = ""
+    return within_part(error, ", ".join(f"--{name}" for name in fields))
 
 
 def _rows(better: "tt.ImprovedTop") -> Iterator[tuple[str, str, str]]:

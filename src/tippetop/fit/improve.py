@@ -46,6 +46,9 @@ which the kind of motion changes."""
 ENTRANTS = 14
 """Places of the grid whose runs are followed beside those."""
 
+DEFAULT_DENSITY = 700.0
+"""Density of the material where nobody states one, kg/m^3."""
+
 SHORTEST_TIP = 1.05
 """Least height of the stem's end over the sphere's centre, in radii."""
 
@@ -148,7 +151,7 @@ def improve(
     *,
     friction: Friction | None = None,
     spin: float | None = None,
-    density: float | str = 700.0,
+    density: float | str | None = None,
     mass: float | None = None,
     radius: float | None = None,
     wall: float = 1e-3,
@@ -175,9 +178,10 @@ def improve(
     friction
         Friction of the runs: a law with creep; None for a patch of 0.5 mm with mu = 0.3.
     spin
-        Spin of the launches, rad/s; None for 1.3 times the least.
+        Spin of the launches of the other two goals, rad/s; None for 1.3 times the least.
     density
-        Density of the material, kg/m^3, or its name, such as "beech" or "PLA 20 %".
+        Density of the material, kg/m^3, or its name, such as "beech" or "PLA 20 %"; None for that
+        of the workpiece, or for 700 kg/m^3 where a `Body` is stated.
     mass, radius
         The largest mass, kg, and radius of the sphere, m; None for any mass, and the body's radius.
     wall, stem
@@ -193,7 +197,8 @@ def improve(
     Raises
     ------
     InvalidInput
-        If the body is no such top, the friction has no creep, or no such solid meets the bounds.
+        If the body is no such top, the friction has no creep, no such solid meets the bounds, or a
+        spin is stated for the lowest spin.
 
     Examples
     --------
@@ -221,6 +226,11 @@ def improve(
         raise InvalidInput("trials", trials, "a whole number, 0 or more")
     if not isinstance(body, (Body, Workpiece)):
         raise InvalidInput("body", body, "a Body or a Workpiece, such as presets.REPORT")
+    if spin is not None and goal == "lowest spin":
+        fault = "has no effect where the goal is the lowest spin"
+        raise InvalidInput("spin", spin, "", fault, "leave it out, or choose another goal")
+    if density is None:
+        density = body.density if isinstance(body, Workpiece) else DEFAULT_DENSITY
     by_name = material_density("density", density)
     density, wall = positive_in("density", by_name, "kg m-3"), positive_in("wall", wall, "m")
     stem, gravity = positive_in("stem", stem, "m"), positive_in("gravity", gravity, "m s-2")
