@@ -102,7 +102,11 @@ def test_a_heading_may_have_the_unit(tmp_path):
 
 @pytest.mark.parametrize(
     "heading",
-    ["r (furlong),z", "r_furlong,z", "r in furlong,z", "r ft,z ft", "r,z (1/64 in)", "r (Zoll),z"],
+    [
+        *("r (furlong),z", "r_furlong,z", "r in furlong,z", "r ft,z ft", "r,z (1/64 in)"),
+        *("r_mil,z", "r_um,z", "r yd.,z", "r (mil thick),z", "r (tenths of mm),z", "r (foot),z"),
+        "r (ft, outer),z",
+    ],
 )
 def test_units_that_profiles_do_not_have_are_not_taken_for_metres(tmp_path, heading):
     (tmp_path / "a.csv").write_text(f"{heading}\n0,0\n60,0\n60,50\n0,50")
@@ -111,13 +115,41 @@ def test_units_that_profiles_do_not_have_are_not_taken_for_metres(tmp_path, head
 
 
 @pytest.mark.parametrize(
-    "heading", ["r_outer,z", "r (from the axis),z", "radius in mm,height in mm"]
+    "heading",
+    [
+        *("r_outer,z", "r (from the axis),z", "radius in mm,height in mm", "r_foot,z_foot"),
+        *("r_point,z", "r pole,z pole", "r_link,z", "r_hand,z"),
+    ],
 )
 def test_words_in_headings_are_no_units(tmp_path, heading):
     (tmp_path / "a.csv").write_text(f"{heading}\n0,0\n60,0\n60,50\n0,50")
     volume = math.pi * 60.0**2 * 50.0
     stated = {} if "mm" in heading else {"unit": "mm"}
     assert mass(tmp_path / "a.csv", **stated) == pytest.approx(volume, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("heading", "unit"),
+    [
+        ("r (mm, outer),z (mm, up)", "mm"),
+        ("r (mm, outer);z", "mm"),
+        ("r (outer, mm),z", "mm"),
+        ("r (mm) outer;z (mm) height", "mm"),
+        ("r (m m);z (m m)", "mm"),
+        ("r mm.;z mm.", "mm"),
+        ("r (mm.);z", "mm"),
+        ("r Millimeter;z Millimeter", "mm"),
+        ("r (millimetres);z", "mm"),
+        ("r in Zentimetern;z", "cm"),
+        ("r [Zoll];z", "in"),
+        ("r_metres;z", "m"),
+    ],
+)
+def test_units_are_read_from_headings_as_people_write_them(tmp_path, heading, unit):
+    rows = "\n0,0\n60,0\n60,50\n0,50".replace(",", ";" if ";" in heading else ",")
+    (tmp_path / "a.csv").write_text(heading + rows)
+    workpiece, remarks = read_with_remarks(tmp_path / "a.csv", density=1.0)
+    assert (workpiece.unit, remarks) == (unit, [])
 
 
 @pytest.mark.parametrize("heading", ["d (mm),z (mm)", "Durchmesser,z", "Ø,z"])

@@ -13,7 +13,6 @@ from tippetop.lathe.workpiece import UNITS, Workpiece
 from tippetop.support.errors import Described, FileTrouble, InvalidInput
 from tippetop.support.files import in_words, made_of, named, path_of, read_text
 from tippetop.support.parsing import parse_toml
-from tippetop.support.units import exponents_of, named_unit
 
 MESHES = (".stl", ".obj", ".ply", ".off")
 """Suffixes of meshes."""
@@ -23,17 +22,37 @@ DRAWINGS = (".svg", ".dxf", *MESHES)
 
 ACCEPTED = "a workpiece in TOML, or a profile in CSV, SVG, DXF, STL, OBJ, PLY or OFF"
 
-HEADING_UNIT = re.compile(
-    r"(?:[(\[{]\s*(?P<bracketed>[^)\]}]*?)\s*[)\]}]|/\s*(?P<slash>[^/]*?)|\sin\s+(?P<word>\S+))\s*$",
-    re.IGNORECASE,
-)
-"""Unit at the end of a heading, such as "r (mm)", "r [mm]", "r/mm" or "r in mm"."""
+BRACKETED = re.compile(r"[(\[{]([^)\]}]*)([)\]}]?)")
+"""Text in brackets in a heading, such as "r (mm)", "r [mm]" or "r (mm, outer)"; between commas that
+ends in the next cell.
+"""
 
-LAST_WORD = re.compile(r"[_,\s]\s*([^\W\d_]+)\s*$")
+STATED_UNIT = re.compile(r"(?:/\s*([^/]*?)|\sin\s+(\S+))$", re.IGNORECASE)
+"""Unit at the end of a heading, such as "r/mm" or "r in mm"."""
+
+LAST_WORD = re.compile(r"[_,\s]\s*([^\W\d_]+)$")
 """Last word of a heading, which may be a unit, as in "r_mm", or part of a name, as in "r_outer"."""
 
-UNIT_NAMES = {**{unit: unit for unit in UNITS}, "inch": "in", "inches": "in"}
+UNIT_NAMES = {
+    **{unit: unit for unit in UNITS},
+    **dict.fromkeys(("metre", "metres", "meter", "meters"), "m"),
+    **dict.fromkeys(("centimetre", "centimetres", "centimeter", "centimeters"), "cm"),
+    **dict.fromkeys(("zentimeter", "zentimetern"), "cm"),
+    **dict.fromkeys(("millimetre", "millimetres", "millimeter", "millimeters"), "mm"),
+    "millimetern": "mm",
+    **dict.fromkeys(("inch", "inches", "zoll"), "in"),
+}
 """Units of profiles by what headings call them, in lower case."""
+
+OTHER_UNITS = {
+    *("nm", "um", "\u00b5m", "\u03bcm", "micron", "microns", "micrometre", "micrometres"),
+    *("micrometer", "micrometers", "mikrometer", "nanometre", "nanometer", "dm", "km", "mil"),
+    *("mils", "thou", "ft", "yd", "yds", "yard", "yards", "furlong", "furlongs", "px", "pixel"),
+    "pixels",
+}
+"""Units that profiles do not have, by what headings call them: short of names of parts such as
+foot, point or hand.
+"""
 
 DIAMETER = re.compile(r"\s*(d|dia|diam|diameter|durchmesser|[ØøΦ⌀∅])\b", re.IGNORECASE)
 """Heading of a column of diameters, of which half are the distances from the axis."""
@@ -281,18 +300,32 @@ def _unit_of(heading: list[str], path: Path) -> str | None:
 
 def _unit_text(cell: str) -> str:
     """Return what stands in a heading where a unit stands, in lower case; empty for nothing."""
-    match = HEADING_UNIT.search(f" {cell}")
-    if match:
-        text = match["bracketed"] or match["slash"] or match["word"] or ""
-        is_remark = " " in text and not any(sign.isdigit() for sign in text)
-        return "" if is_remark else text.lower()
-    last = LAST_WORD.search(f" {cell}")
-    if last is None:
-        return ""
-    word = last[1].lower()
-    unit = named_unit(last[1]) if word not in UNIT_NAMES else None
-    is_length = unit is not None and unit.exponents == exponents_of("m")
-    return word if word in UNIT_NAMES or is_length else ""
+    for text, bracket in BRACKETED.findall(cell):
+        unit = _bracketed_unit(text.strip(" .").lower(), bool(bracket))
+        if unit:
+            return unit
+    outside = BRACKETED.sub(" ", f" {cell}").rstrip(" .,;:)]}")
+    stated = STATED_UNIT.search(outside)
+    if stated:
+        return (stated[1] or stated[2] or "").lower()
+    last = LAST_WORD.search(outside)
+    word = last[1].lower() if last else ""
+    return word if word in UNIT_NAMES or word in OTHER_UNITS else ""
+
+
+def _bracketed_unit(text: str, is_closed: bool) -> str:
+    """Return the unit in the text of a bracket, the whole text if it may have one in other words,
+    or nothing for a remark, such as "from the axis".
+    """
+    if text.replace(" ", "") in UNIT_NAMES:
+        return text.replace(" ", "")
+    words = re.findall(r"[^\s,;:.]+", text)
+    has_digit = any(sign.isdigit() for sign in text)
+    if words and words[0] in UNIT_NAMES and not has_digit:
+        return words[0]
+    names = (UNIT_NAMES.keys() | OTHER_UNITS) - {"in"}  # as a word, "in" is a preposition
+    is_unclear = (is_closed and len(words) == 1) or has_digit or not names.isdisjoint(words)
+    return text if is_unclear else ""
 
 
 def _numbers(number: int, row: list[str], path: Path) -> tuple[float, ...]:
