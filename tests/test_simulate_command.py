@@ -1,7 +1,9 @@
 """What `tippetop simulate` prints and writes."""
 
 import json
+import sys
 from pathlib import Path
+from types import ModuleType
 
 import pandas as pd
 import pytest
@@ -71,12 +73,32 @@ def test_every_file_asked_for_is_written(tmp_path: Path) -> None:
     assert list(flights.columns) == ["start", "end", "max_gap"]
 
 
+def test_a_workbook_is_written_where_openpyxl_is_installed(tmp_path, monkeypatch) -> None:
+    names = {"--csv": "run.xlsx", "--events-table": "ev.xlsx"}
+    words = [word for option, name in names.items() for word in (option, str(tmp_path / name))]
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    done = CliRunner().invoke(app, ["simulate", "--duration", "1e9", *words])
+    assert isinstance(done.exception, tt.Unavailable)  # before the run
+    monkeypatch.setitem(sys.modules, "openpyxl", ModuleType("openpyxl"))
+    written = []
+
+    def to_excel(frame, file, **options):
+        written.append(list(frame))
+
+    monkeypatch.setattr(pd.DataFrame, "to_excel", to_excel)
+    said("--duration", "0.1", *words)
+    assert {path.name for path in tmp_path.iterdir()} == set(names.values())
+    samples, events = written
+    assert "tilt" in samples
+    assert events == ["time", "kind", "impulse", "energy_lost", "surface"]
+
+
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
         (
             ["--csv", "run.txt"],
-            "--csv: 'run.txt' is not a file name that ends in .csv",
+            "--csv: 'run.txt' is not a file name that ends in .csv or .xlsx",
         ),
         (
             ["--csv", "a.csv", "--events-table", "a.csv"],

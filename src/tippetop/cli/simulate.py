@@ -40,7 +40,8 @@ TABLES = {"events_table": "events", "flights_table": "flights"}
 ENDINGS = {
     "plot": DRAWINGS,
     "html": (".html", ".htm"),
-    **dict.fromkeys(TABLES, (".csv", ".parquet")),
+    "csv": (".csv", ".xlsx"),
+    **dict.fromkeys(TABLES, (".csv", ".xlsx", ".parquet")),
 }
 """Accepted suffixes of files; other kinds, except `out`, have their name as suffix."""
 
@@ -122,15 +123,18 @@ def simulate(
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Write the run as NetCDF.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the run as .png, .svg or .pdf.")] = None,
-    csv: Annotated[Path | None, typer.Option(help="Write every variable as CSV.")] = None,
+    csv: Annotated[
+        Path | None,
+        typer.Option(help="Write every variable as CSV, or as a workbook: .csv or .xlsx."),
+    ] = None,
     parquet: Annotated[
         Path | None, typer.Option(help="Write every variable as Parquet; needs pyarrow.")
     ] = None,
     events_table: Annotated[
-        Path | None, typer.Option(help="Write the events as .csv or .parquet.")
+        Path | None, typer.Option(help="Write the events as .csv, .xlsx or .parquet.")
     ] = None,
     flights_table: Annotated[
-        Path | None, typer.Option(help="Write the flights as .csv or .parquet.")
+        Path | None, typer.Option(help="Write the flights as .csv, .xlsx or .parquet.")
     ] = None,
     glb: Annotated[
         Path | None, typer.Option(help="Write the moving top as an animated .glb.")
@@ -213,7 +217,7 @@ def _write(run: "xr.Dataset", kind: str, path: Path, force: bool) -> None:
         case "plot":
             write_figure(tt.plot(run), path, force)
         case "csv" | "parquet" | "events_table" | "flights_table":
-            write = tt.write_csv if path.suffix.lower() == ".csv" else tt.write_parquet
+            write = tt.write_parquet if path.suffix.lower() == ".parquet" else tt.write_csv
             write(run, path, force, table=TABLES.get(kind))
         case "glb":
             tt.write_glb(run, path, force)
@@ -228,7 +232,7 @@ def _check_files(requested: dict[str, Path], force: bool, duration: float) -> No
     """Raise an error if a file cannot be written.
 
     Its suffix must fit, no two options may name one file, a file may be replaced only if `force`,
-    and films and Parquet need their programs.
+    and films, Parquet and workbooks need their programs.
     """
     places = dict[Path, str]()
     for kind, path in requested.items():
@@ -241,10 +245,10 @@ def _check_files(requested: dict[str, Path], force: bool, duration: float) -> No
         if place in places:
             raise InvalidInput(option, str(path), f"another file than that of {places[place]}")
         places[place] = option
-        if path.suffix.lower() == ".parquet":
-            from tippetop.export.tables import need_parquet  # noqa: PLC0415 - slow to import
+        if path.suffix.lower() in (".parquet", ".xlsx"):
+            from tippetop.export.tables import need_parquet, need_workbook  # noqa: PLC0415 - slow
 
-            need_parquet()
+            need_parquet() if path.suffix.lower() == ".parquet" else need_workbook()
         if kind in FILMS:
             from tippetop.export.movie import require_film  # noqa: PLC0415 - slow to import
 

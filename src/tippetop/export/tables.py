@@ -104,12 +104,16 @@ def _require_workbook(frame: pd.DataFrame, sep: str | None, decimal: str) -> Non
     """Raise an error unless a table can be written as a workbook of Excel."""
     for name, value, usual in (("sep", sep, None), ("decimal", decimal, ".")):
         if value != usual:
-            fault = "separates nothing in a workbook, whose cells are numbers"
-            raise InvalidInput(name, value, "", fault, "leave it out")
+            raise InvalidInput(name, value, "", "has no effect in a workbook", "leave it out")
     if len(frame) > MOST_ROWS:
         shown = Described(f"a table of {len(frame):,} rows")
         fault = f"is longer than a sheet of Excel, which has {MOST_ROWS:,}"
         raise InvalidInput("path", shown, "", fault, "write .csv or .parquet")
+    need_workbook()
+
+
+def need_workbook() -> None:
+    """Raise `Unavailable` if openpyxl is not installed."""
     try:
         import_module("openpyxl")
     except ImportError:

@@ -319,7 +319,7 @@ def _bracketed_unit(text: str, is_closed: bool) -> str:
     """
     if text.replace(" ", "") in UNIT_NAMES:
         return text.replace(" ", "")
-    words = re.findall(r"[^\s,;:.]+", text)
+    words: list[str] = re.findall(r"[^\s,;:.]+", text)
     has_digit = any(sign.isdigit() for sign in text)
     if words and words[0] in UNIT_NAMES and not has_digit:
         return words[0]
