@@ -3,6 +3,7 @@ own.
 """
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -180,3 +181,21 @@ def test_a_law_without_a_force_at_the_launch_is_told_as_that() -> None:
     run = tt.simulate(moving, 5.0, samples=2)
     assert float(run["end_time"]) < 0.1, "its slip ends"
     assert "The law undefined_at_rest has no finite force at zero slip" in run.attrs["message"]
+
+
+def test_a_law_of_numpy_functions_without_a_force_is_refused_without_warnings() -> None:
+    """NumPy warns where it divides 0 by 0; the refusal says so in a sentence, and once."""
+
+    @friction_law(mu="1")
+    def undefined_by_numpy(
+        slip: Horizontal, angular_velocity: Vector, mu: Scalar
+    ) -> tuple[Scalar, Scalar]:
+        speed = np.sqrt(slip[0] ** 2 + slip[1] ** 2)
+        return -mu * slip[0] / speed, -mu * slip[1] / speed
+
+    with (
+        warnings.catch_warnings(action="error"),
+        pytest.raises(tt.InvalidInput, match="has no finite force") as caught,
+    ):
+        REPORT.replace({"launch.slip": (0.0, 0.0), "friction": undefined_by_numpy(mu=0.3)})
+    assert "if it divides by the slip speed" in caught.value.hint

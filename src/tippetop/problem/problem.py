@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Self
 
+import numpy as np
 import tomli_w
 from pydantic import model_validator
 
@@ -476,8 +477,8 @@ def _require_finite_friction(problem: Problem) -> None:
 
 
 FORCE_AT_REST = (
-    "let the law have one at every slip, and be 0 without slip: divide by sqrt(v^2 + s^2) instead"
-    " of the slip speed v, with a small speed s"
+    "let the law have one at every slip, and be 0 without slip: if it divides by the slip speed v,"
+    " divide by sqrt(v^2 + s^2) instead, with a small speed s"
 )
 """What a user's law lacks that divides 0 by 0 where nothing slips."""
 
@@ -485,8 +486,9 @@ FORCE_AT_REST = (
 def has_force_at(law: FrictionLaw, slip: Horizontal, turning: Vector) -> bool:
     """Return whether a law of friction has a finite force and torque at a slip, m/s."""
     try:
-        traction = law.traction(slip, turning)
-        return math.isfinite(sum([*traction.force, *traction.torque]))
+        with np.errstate(all="ignore"):  # laws of NumPy functions warn where they divide 0 by 0
+            traction = law.traction(slip, turning)
+            return math.isfinite(sum([*traction.force, *traction.torque]))
     except ArithmeticError:
         return False
 
