@@ -11,9 +11,13 @@ from typer.testing import CliRunner
 import tippetop as tt
 from campaigns import among
 from tippetop.cli.commands import app
-from tippetop.fit.fit_result import search_of
+from tippetop.fit.fit_result import known_together, search_of
 from tippetop.fit.model import Model
-from tippetop.fit.residual_statistics import are_correlated, correlation_time
+from tippetop.fit.residual_statistics import (
+    are_correlated,
+    correlation_time,
+    durbin_watson_moments,
+)
 from tippetop.fit.search import Minimum, Region, Search, apart
 from tippetop.fit.template_bank import SPACING, lattice, phase_metric
 
@@ -316,6 +320,16 @@ def test_a_decay_of_another_kind_is_cautioned():
     assert any("not random" in caution for caution in fitted.cautions)
 
 
+@pytest.mark.parametrize(("error", "noise"), [(0.0, None), (1e-4, 2e-3)])
+def test_residuals_of_rounding_or_far_below_the_noise_are_no_sign_of_a_wrong_model(error, noise):
+    """Rounding of a run, and a slow drift of a twentieth of the stated noise, have patterns."""
+    times = np.linspace(0.0, 0.4, 25)
+    tilt = tt.simulate(TRUE, 0.4, times=times)["tilt"].values
+    film = tt.Measurement.of_variables(times, {"tilt": tilt + error * times / 0.4}, noise=noise)
+    fitted = tt.fit(TRUE, film, "friction.mu", starts=1)
+    assert not any("not random" in caution for caution in fitted.cautions)
+
+
 def test_a_guess_may_turn_over_later_than_the_top_did():
     slow, fast = TRUE.replace({"friction.mu": 0.5}), TRUE.replace({"friction.mu": 0.6})
     seen = float(tt.simulate(fast, 9.0, samples=2)["turnover_time"])
@@ -406,6 +420,44 @@ def test_noise_stated_too_large_or_too_small_is_named(run):
         assert any(word in caution for caution in fitted.cautions), stated
 
 
+@pytest.mark.parametrize(("count", "numbers"), [(8, 4), (10, 4), (12, 3), (20, 4), (60, 5)])
+def test_residuals_of_a_fit_are_told_from_noise_as_often_as_promised(count, numbers):
+    """The fit takes the slow part away, and what is left of white noise alternates more."""
+    columns = np.vander(np.linspace(-1.0, 1.0, count), numbers, increasing=True)
+    fitted = np.linalg.qr(columns)[0]
+    tables = np.random.default_rng(18).normal(size=(1000, count))
+    residuals = tables - tables @ fitted @ fitted.T
+    assert np.mean([are_correlated(one, fitted) for one in residuals]) < 0.02
+    mean, deviation = durbin_watson_moments(fitted)
+    ratios = np.sum(np.diff(residuals) ** 2, axis=1) / np.sum(residuals**2, axis=1)
+    assert abs(ratios.mean() - mean) < 4.0 * deviation / 1000**0.5
+    assert ratios.std() == pytest.approx(deviation, rel=0.1)
+
+
+def test_of_several_columns_each_has_moments_of_its_own():
+    """A column's rows of the directions of a whole table make no projection."""
+    random = np.random.default_rng(19)
+    fitted = np.linalg.qr(random.normal(size=(24, 3)).cumsum(axis=0))[0]
+    tables = random.normal(size=(4000, 24))
+    column = (tables - tables @ fitted @ fitted.T)[:, ::2]
+    ratios = np.sum(np.diff(column) ** 2, axis=1) / np.sum(column**2, axis=1)
+    mean, deviation = durbin_watson_moments(fitted[::2])
+    assert ratios.mean() == pytest.approx(mean, abs=0.05)
+    assert ratios.std() == pytest.approx(deviation, rel=0.1)
+
+
+def test_residuals_that_alternate_do_not_make_errors_too_small(run):
+    alternating = 0.01 * (-1.0) ** np.arange(len(TIMES))
+    slow = 0.01 * np.cos(4.0 * TIMES)
+    for error, is_small in ((alternating, False), (slow, True)):
+        data = tt.Measurement.of_variables(TIMES, {"tilt": run["tilt"].values + error}, noise=0.01)
+        cautions = tt.fit(TRUE, data, "friction.mu", starts=1).cautions
+        caution = next(one for one in cautions if "not random" in one)
+        assert "may lack something" in caution
+        assert "of 1000 tables" in caution or "Durbin-Watson" in caution
+        assert ("errors are too small" in caution) is is_small
+
+
 def test_drifts_are_told_from_noise():
     drift = np.cos(np.linspace(0.0, 2.0 * np.pi, 13))
     assert are_correlated(drift)
@@ -417,7 +469,9 @@ def test_drifts_are_told_from_noise():
     for step in random.normal(size=8000):
         series.append(0.8 * series[-1] + step)
     assert correlation_time(np.array(series)) == pytest.approx(9.0, rel=0.2)
-    assert correlation_time(random.normal(size=8000)) == 1.0
+    white = random.normal(size=8000)
+    assert not are_correlated(white)
+    assert correlation_time(white) == pytest.approx(1.0, abs=0.2)
 
 
 def test_oscillations_are_told_from_noise():
@@ -449,6 +503,15 @@ def test_numbers_that_are_known_only_together_are_named():
     assert 0.01 * percent < 0.1 * relative.min()
     alone = tt.fit(TRUE, film, BOTH, starts=1)
     assert not any("known only together" in one for one in alone.cautions)
+
+
+@pytest.mark.parametrize(("correlation", "sign"), [(0.9999, "\N{MINUS SIGN}"), (-0.9999, "+")])
+def test_a_sum_that_is_known_alone_is_written_with_its_sign_and_unit(correlation, sign):
+    """Errors 3 and 2 with the correlation 0.9999: the sum a -+ 1.5 b has the error 0.042."""
+    names, units = ["launch.spin", "launch.precession"], ["rad/s", "rad/s"]
+    covariance = np.array([[9.0, 6.0 * correlation], [6.0 * correlation, 4.0]])
+    (words,) = known_together(names, np.array([150.0, -0.1]), covariance, units)
+    assert words.endswith(f"launch.spin {sign} 1.5 · launch.precession to 0.042 rad/s")
 
 
 def test_a_search_of_the_nearest_minimum_alone_says_so(tilt_film):

@@ -13,15 +13,17 @@ from tippetop.fit.measurement import Measurement
 from tippetop.fit.residual_statistics import (
     FEWEST_RESIDUALS,
     MOST_ABOVE,
-    are_correlated,
-    correlation_time,
+    RARE_LINE,
+    ResidualColumn,
     durbin_watson,
+    durbin_watson_moments,
     exceeds_noise,
     line_probability,
 )
 from tippetop.fit.search import Minimum, Search
 from tippetop.integrators.base import Array
 from tippetop.problem.problem import Problem
+from tippetop.results.catalogue import written_unit
 from tippetop.support.errors import Described, InvalidInput, NotConverged, is_number
 from tippetop.support.suggestions import not_one_of
 
@@ -42,6 +44,10 @@ together. Friction and spin of usual films stay above twice that."""
 OUTLIER = 5.0
 """Standardised residual from which on a number counts as an outlier: one in a million random ones
 is larger."""
+
+ALTERNATING = 2.0
+"""Statistic of Durbin and Watson from which on neighbouring residuals cancel: their errors are then
+not too small."""
 
 RIVAL = 6.0
 """Sum of squares above the least, in variances, up to which another minimum is reported."""
@@ -256,10 +262,9 @@ def result_of(search: Search, best: Minimum, rivals: Sequence[Minimum]) -> FitRe
     covariance, undetermined = _covariance(
         scaled, model.scales(numbers), model.names, len(model.fields), variance
     )
+    columns = search.columns(residuals, jacobian)
     if not search.is_noise_known:
-        covariance *= max(
-            (correlation_time(one) for _, one in search.columns(residuals)), default=1.0
-        )
+        covariance *= max((one.correlation_time for one in columns), default=1.0)
     if degrees < 1 and not search.is_noise_known:
         covariance[:] = np.nan
     errors = np.sqrt(np.diag(covariance))
@@ -301,8 +306,8 @@ def result_of(search: Search, best: Minimum, rivals: Sequence[Minimum]) -> FitRe
         float(np.log(count)) * parameters - 2.0 * log_likelihood,
         undetermined,
         (
-            *_cautions(search, best, residuals, degrees, near),
-            *_entangled(names, numbers, covariance),
+            *_cautions(search, best, columns, degrees, near),
+            *known_together(names, numbers, covariance, _units(search, numbers)),
         ),
         tuple(dict(zip(names, rival.numbers.tolist(), strict=True)) for rival in near),
         search.runs,
@@ -404,7 +409,7 @@ def _log_likelihood(search: Search, cost: float, count: int) -> tuple[float, int
 def _cautions(
     search: Search,
     best: Minimum,
-    residuals: Array,
+    columns: Sequence[ResidualColumn],
     degrees: int,
     rivals: Sequence[Minimum],
 ) -> tuple[str, ...]:
@@ -442,37 +447,56 @@ def _cautions(
             f"chi² is {best.cost:.4g} where {degrees} is expected: the noise is smaller than"
             " stated, and so are the errors"
         )
-    for label, column in search.columns(residuals):
-        deviation = 1.0 if is_stated else np.sqrt(best.cost / max(degrees, 1))
-        words += _cautions_of_column(label, column / (deviation or 1.0), is_stated)
+    deviation = 1.0 if is_stated else np.sqrt(best.cost / max(degrees, 1))
+    for column in columns:
+        if not column.is_negligible:
+            words += _cautions_of_column(column, deviation, is_stated)
     return tuple(words)
 
 
-def _cautions_of_column(label: str, column: Array, is_stated: bool) -> list[str]:
-    """Return in words what the standardised residuals of a column contradict."""
-    words = list[str]()
-    outliers = int(np.sum(np.abs(column) > OUTLIER))
-    if outliers and len(column) >= FEWEST_RESIDUALS:
+def _cautions_of_column(column: ResidualColumn, deviation: float, is_stated: bool) -> list[str]:
+    """Return in words what the residuals of a column, of a standard deviation, contradict."""
+    words, label, count = list[str](), column.label, len(column.residuals)
+    distances = np.abs(column.residuals) / deviation
+    outliers = int(np.sum(distances > OUTLIER))
+    if outliers and count >= FEWEST_RESIDUALS:
         words.append(
-            f"{outliers} of {len(column)} values of {label} are farther from the run than"
-            f" {OUTLIER:g} standard deviations, {np.abs(column).max():.3g} at most: check them"
+            f"{outliers} of {count} values of {label} are farther from the run than"
+            f" {OUTLIER:g} standard deviations, {distances.max():.3g} at most: check them"
         )
-    if are_correlated(column):
-        length = correlation_time(column)
-        effect = (
-            "the errors are too small"
-            if is_stated or length == 1.0
-            else f"the errors take the data for {len(column) / length:.2g} independent ones"
-        )
+    if column.is_correlated:
+        ratio, mean = durbin_watson(column.residuals), durbin_watson_moments(column.fitted).mean
+        pattern = f"Durbin-Watson {ratio:.2f}, where {mean:.2f} is expected"
+        probability = line_probability(column.residuals, column.fitted)
+        if probability < RARE_LINE:
+            tables = 1000.0 * probability
+            often = f"{tables:.0f}" if tables >= 1.0 else "fewer than 1"
+            pattern += f"; random ones would swing so regularly in {often} of 1000 tables"
+        length, effect = column.correlation_time, ""
+        if not is_stated and length > 1.0:
+            effect = f", and the errors take the data for {count / length:.2g} independent ones"
+        elif ratio < ALTERNATING:
+            effect = ", and the errors are too small"
         words.append(
-            f"the residuals of {label} are not random (Durbin-Watson {durbin_watson(column):.2f},"
-            f" strongest line: probability {line_probability(column):.1g}): the model lacks"
-            f" something, such as another law of friction, and {effect}"
+            f"the residuals of {label} are not random ({pattern}): the model may lack something,"
+            f" such as another law of friction{effect}"
         )
     return words
 
 
-def _entangled(names: Sequence[str], numbers: Array, covariance: Array) -> list[str]:
+def _units(search: Search, numbers: Array) -> list[str]:
+    """Return the units of the fitted numbers for people; empty for those of the instruments."""
+    problem, words = search.model.problem_of(numbers), list[str]()
+    for name in search.model.names:
+        field = name.split(".", 1)[1] if name[0].isdigit() else name  # of one launch of several
+        units = problem.quantity(field).units if name in search.model.fields else ""
+        words.append(written_unit(units) if units not in ("", "1") else "")
+    return words
+
+
+def known_together(
+    names: Sequence[str], numbers: Array, covariance: Array, units: Sequence[str]
+) -> list[str]:
     """Return in words which pairs of numbers are known only together, and what is known of them.
 
     Of a and b with relative errors s and t and correlation r, the product a b^(-r s/t) has the
@@ -494,7 +518,9 @@ def _entangled(names: Sequence[str], numbers: Array, covariance: Array) -> list[
             s, t = s / numbers[first], t / numbers[second]
             combination = f"{a} · {b}^{-correlation * s / t:.2g} to {100.0 * s * narrowing:.2g} %"
         else:
-            combination = f"{a} {-correlation * s / t:+.3g} · {b} to {s * narrowing:.2g}"
+            sign = "\N{MINUS SIGN}" if correlation > 0.0 else "+"
+            combination = f"{a} {sign} {abs(correlation) * s / t:.3g} · {b}"
+            combination += f" to {s * narrowing:.2g} {units[first]}".rstrip()
         words.append(
             f"{a} and {b} are known only together (correlation {correlation:.4f}): the data"
             f" determine {combination}"

@@ -18,7 +18,7 @@ from scipy.optimize import OptimizeResult, least_squares, minimize
 from tippetop.fit.joint_model import JointModel
 from tippetop.fit.measurement import Measurement
 from tippetop.fit.model import FORWARD_STEP, Model
-from tippetop.fit.residual_statistics import are_correlated, columns_of, exceeds_noise
+from tippetop.fit.residual_statistics import ResidualColumn, exceeds_noise, is_negligible
 from tippetop.fit.template_bank import SPACING, lattice, phase_metric, template_count
 from tippetop.integrators.base import Array
 from tippetop.support.errors import InvalidInput, NotConverged
@@ -221,7 +221,8 @@ class Search:
         values, slopes = self.linearized(numbers)
         steps = FORWARD_STEP * self.model.scales(numbers)
         deviation = np.sqrt(self.variance(float(values @ values)))
-        moves = np.nan_to_num(np.linalg.norm(slopes, axis=0)) * steps / deviation
+        with np.errstate(divide="ignore", invalid="ignore"):  # Exact data have no deviation.
+            moves = np.nan_to_num(np.linalg.norm(slopes, axis=0)) * steps / deviation
         long = (moves > LONG_STEP) & ~self.model.is_event.any()
         if long.any() and np.isfinite(moves).all():
             parts = np.divide(SHORT_STEP, moves, out=np.ones_like(moves), where=long)
@@ -279,13 +280,21 @@ class Search:
             return not exceeds_noise(minimum.cost, degrees, UNLIKELY)
         if minimum.cost < REPRODUCED * max(degrees, 1):
             return True
-        return not any(are_correlated(one) for _, one in self.columns(values))
+        return not any(one.is_correlated for one in self.columns(values, minimum.slopes))
 
-    def columns(self, residuals: Array) -> list[tuple[str, Array]]:
-        """Return the label and the residuals of each column of the data."""
-        complete = np.full(len(self.model.data), np.nan)
-        complete[self.measured] = residuals
-        return list(columns_of(self.model, complete))
+    def columns(self, residuals: Array, jacobian: Array) -> list[ResidualColumn]:
+        """Return the residuals of each column of the data; the Jacobian is that of all of them."""
+        columns, fitted = list[ResidualColumn](), _directions(jacobian, len(residuals))
+        values = (self.model.data / self.deviations)[self.measured]
+        places = np.where(self.measured, np.cumsum(self.measured) - 1, -1)
+        ends = np.cumsum([one.values.size for one in self.model.measurements])[:-1]
+        for one, part in zip(self.model.measurements, np.split(places, ends), strict=True):
+            table = part.reshape(one.values.shape)
+            for label, column in zip(one.observation.labels, table.T, strict=True):
+                rows = column[column >= 0]
+                small = is_negligible(residuals[rows], values[rows], self.is_noise_known)
+                columns.append(ResidualColumn(label, residuals[rows], small, fitted[rows]))
+        return columns
 
     def slopes_over_interval(self, numbers: Array, place: int, variance: float) -> Array:
         """Return how the residuals move with a number over about its standard error.
@@ -680,6 +689,20 @@ def apart(ranked: Sequence[tuple[float, Array]], region: Region) -> list[tuple[f
             chosen.append((cost, point))
         places.append(np.asarray(place, dtype=np.float64))
     return chosen
+
+
+def _directions(jacobian: Array, rows: int) -> Array:
+    """Return orthonormal directions in which fitted numbers move the data, shape (rows, numbers).
+
+    Directions that the data do not determine are left out.
+    """
+    slopes = np.nan_to_num(jacobian)
+    slopes = slopes[:, np.abs(slopes).max(axis=0, initial=0.0) > 0.0]
+    if not slopes.size:
+        return np.zeros((rows, 0))
+    sizes = np.linalg.norm(slopes, axis=0)
+    directions, strengths, _ = np.linalg.svd(slopes / sizes, full_matrices=False)
+    return np.asarray(directions[:, strengths > NEGLIGIBLE_SLOPE * strengths[0]])
 
 
 def _step_left(jacobian: Array, residuals: Array, is_noise_known: bool) -> float:
