@@ -30,7 +30,7 @@ test: $(VENV)/.installed-dev ## Run the tests
 	$(PYTEST)
 
 test-all: $(VENV)/.installed-dev ## Run the tests, and a sample of every campaign
-	@echo "This takes about twelve minutes on two processors that have nothing else to do."
+	@echo "This takes about fourteen minutes on two processors that have nothing else to do."
 	$(PYTEST) -m "not (browser or campaign)"
 
 campaigns: $(VENV)/.installed-dev ## Run every campaign in the size that is claimed, and search at random

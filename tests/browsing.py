@@ -88,7 +88,7 @@ class Visit:
     def close(self, expected: tuple[str, ...] = ()) -> None:
         self.context.close()
         unexpected = [said for said in self.trouble if not any(part in said for part in expected)]
-        assert not unexpected
+        assert not unexpected, unexpected
         away = {
             urlparse(url).hostname
             for url in self.requests
