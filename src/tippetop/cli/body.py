@@ -20,14 +20,17 @@ from tippetop.cli.options import (
 from tippetop.cli.problem import commented_toml
 from tippetop.cli.terminal import facts, listing, show, show_json, spelled
 from tippetop.cli.workpieces import (
+    SPIN,
     Axis,
     Frame,
     Tolerance,
     Unit,
     UpsideDown,
+    Whole,
+    require_one_format,
     workpiece_in,
 )
-from tippetop.support.errors import Described, InvalidInput
+from tippetop.support.errors import InvalidInput
 from tippetop.support.files import place_for, require_ending
 
 FILE_ENDINGS = {
@@ -38,9 +41,6 @@ FILE_ENDINGS = {
     "urdf": (".urdf",),
 }
 """Accepted suffixes of files."""
-
-SPIN = 155.0
-"""Axial spin of a launch in a file that is written, rad/s: that of the report."""
 
 ROUND_FEET = ("sphere", "eccentric_sphere", "spheroid", "oval")
 """Kinds of surfaces on which a body can be spun so that friction raises it."""
@@ -63,9 +63,7 @@ def body(
     frame: Frame = None,
     upside_down: UpsideDown = False,
     tolerance: Tolerance = None,
-    whole: Annotated[
-        bool, typer.Option("--whole", help="Accept incomplete surfaces as if they were complete.")
-    ] = False,
+    whole: Whole = False,
     runs: Annotated[
         bool,
         typer.Option(
@@ -114,10 +112,7 @@ def body(
         frame=frame,
         tolerance=tolerance,
     )
-    if as_toml and as_json:
-        raise InvalidInput(
-            "--toml", Described("beside --json"), "one of the two", "asks for two formats"
-        )
+    require_one_format(as_toml, as_json)
     if as_toml:
         turned = tt.Body.turned(workpiece, whole=whole)
         written = commented_toml(drilling_launch(turned, SPIN))

@@ -23,14 +23,17 @@ from tippetop.cli.options import (
 from tippetop.cli.problem import commented_toml
 from tippetop.cli.terminal import facts, show, show_json
 from tippetop.cli.workpieces import (
+    SPIN,
     Axis,
     Frame,
     Tolerance,
     Unit,
     UpsideDown,
+    Whole,
+    require_one_format,
     workpiece_in,
 )
-from tippetop.support.errors import MISSING, Described, InvalidInput, within_part
+from tippetop.support.errors import MISSING, InvalidInput, within_part
 from tippetop.support.files import place_for, require_ending
 
 
@@ -76,9 +79,7 @@ def improve(
     stem: Annotated[
         str, typer.Option(metavar=NUMBER, help="Least radius of the stem, m or with a unit.")
     ] = "1.5 mm",
-    completed: Annotated[
-        bool, typer.Option("--whole", help="Accept incomplete surfaces as if they were complete.")
-    ] = False,
+    completed: Whole = False,
     trials: Annotated[
         int, number_option(int, "Most bodies that are tried by runs; 0 for theory alone.")
     ] = 20,
@@ -98,10 +99,7 @@ def improve(
 
     from tippetop.fit.standing import drilling_launch  # noqa: PLC0415
 
-    if as_toml and as_json:
-        raise InvalidInput(
-            "--toml", Described("beside --json"), "one of the two", "asks for two formats"
-        )
+    require_one_format(as_toml, as_json)
     files = dict[str, Path]()
     for kind, path, endings in (("plot", plot, DRAWINGS), ("stl", stl, (".stl",))):
         if path is not None:
@@ -147,7 +145,7 @@ def improve(
     if as_toml:
         # From the least spin the last part of the rise takes for ever.
         spins = (better.launch_spin, 1.3 * better.spin)
-        launch = drilling_launch(better.body, next(filter(math.isfinite, spins), 155.0))
+        launch = drilling_launch(better.body, next(filter(math.isfinite, spins), SPIN))
         typer.echo(commented_toml(launch).rstrip())
     elif as_json:
         names = [one.name for one in fields(better) if one.name not in ("body", "workpiece")]

@@ -8,7 +8,7 @@ import typer
 
 import tippetop as tt
 from tippetop.cli.options import number_option
-from tippetop.support.errors import MISSING, InvalidInput
+from tippetop.support.errors import MISSING, Described, InvalidInput
 
 Unit = Annotated[
     str | None,
@@ -43,10 +43,27 @@ Tolerance = Annotated[
     ),
 ]
 
+Whole = Annotated[
+    bool, typer.Option("--whole", help="Accept incomplete surfaces as if they were complete.")
+]
+
+SPIN = 155.0
+"""Axial spin of a launch in a file that is written, rad/s, where no other is known: that of the
+report.
+"""
+
 SURELY_MOVED, DOUBTFUL = 1e-9, 10.0
 """Distance in sizes of the profile above which it is not rounding of floats; and in roundings of
 the profile's numbers up to which an arc's centre beside the axis may be due to them.
 """
+
+
+def require_one_format(as_toml: bool, as_json: bool) -> None:
+    """Refuse --toml beside --json."""
+    if as_toml and as_json:
+        raise InvalidInput(
+            "--toml", Described("beside --json"), "one of the two", "asks for two formats"
+        )
 
 
 def workpiece_in(file: Path, upside_down: bool, **options: Any) -> "tuple[tt.Workpiece, list[str]]":

@@ -153,9 +153,8 @@ def line_probability(series: Array, fitted: Array) -> float:
 def correlation_time(series: Array) -> float:
     """Return how many successive residuals count as one: the sum of their autocorrelation.
 
-    The sum ends where the autocorrelation of two
-    neighbouring lags is negative together: C. J. Geyer, Practical Markov chain Monte Carlo,
-    Statistical Science 7 (1992), 473.
+    The sum ends where the autocorrelation of two neighbouring lags is negative together:
+    C. J. Geyer, Practical Markov chain Monte Carlo, Statistical Science 7 (1992), 473.
     """
     size, total = float(series @ series), 1.0
     for lag in range(1, len(series) - 1, 2):
