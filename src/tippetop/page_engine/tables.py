@@ -136,6 +136,11 @@ def _described(part: type[Part]) -> dict[str, Any]:
     }
 
 
+def _part_named(schema: dict[str, Any]) -> str:
+    """Return the name of the part that a schema describes or refers to."""
+    return str(schema["$ref"].rpartition("/")[2] if "$ref" in schema else schema["title"])
+
+
 def _field(info: FieldInfo, field: dict[str, Any]) -> dict[str, Any]:
     several = [one for one in field.get("anyOf", [field]) if one.get("type") != "null"]
     first, description = several[0], dict[str, Any]()
@@ -148,15 +153,13 @@ def _field(info: FieldInfo, field: dict[str, Any]) -> dict[str, Any]:
         description["choices"] = first.get("enum", [first.get("const")])
     elif "oneOf" in first:
         description |= {
-            "parts": [one["title"] for one in first["oneOf"]],
+            "parts": [_part_named(one) for one in first["oneOf"]],
             "several": len(several) > 1,
         }
     elif "$ref" in first or first.get("type") == "object":
-        description["parts"] = [
-            first["$ref"].rpartition("/")[2] if "$ref" in first else first["title"]
-        ]
+        description["parts"] = [_part_named(first)]
     elif "$ref" in first.get("items", {}):
-        description |= {"parts": [first["items"]["$ref"].rpartition("/")[2]], "listed": True}
+        description |= {"parts": [_part_named(first["items"])], "listed": True}
     elif first.get("items", {}).get("type") == "array":
         description |= {"points": True, "accepted": POINTS}
     elif first.get("type") == "array":
