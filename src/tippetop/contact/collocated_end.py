@@ -7,6 +7,7 @@ up to the end: one step of collocation goes from a known speed to zero, with its
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tippetop.contact.slip_step import SlipStep
@@ -51,9 +52,16 @@ class CollocatedEnd:
 
     def at(self, part: float) -> list[Scalar]:
         """Return the numbers where a part of the time is left; slip is exactly zero at the end."""
+        return self.rows([part])[0]
+
+    def rows(self, parts: Sequence[float]) -> list[list[Scalar]]:
+        """Return the numbers at several parts of the time that are left, one row each."""
+        terms = self.terms.tolist()
+        return [self._row(terms, part) for part in parts]
+
+    def _row(self, terms: Sequence[float], part: float) -> list[Scalar]:
         count, place = len(self.start), PARTS * (1.0 - part)
-        full = min(int(place), PARTS - 1)
-        terms, numbers = self.terms.tolist(), list[Scalar]()
+        full, numbers = min(int(place), PARTS - 1), list[Scalar]()
         for number, begin in enumerate(self.start):
             value = begin
             for earlier in range(full + 1):

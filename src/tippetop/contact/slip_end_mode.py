@@ -27,6 +27,7 @@ from tippetop.contact.surfaces import passes_flat
 from tippetop.contact.transient import DEGREE, TransientMode, straight
 from tippetop.integrators.base import Arc, Array, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution, as_array
+from tippetop.integrators.guard_functions import guard_values
 from tippetop.mechanics.contacts.forces import slip_length
 from tippetop.mechanics.contacts.slip_clock import (
     SlipComponent,
@@ -204,20 +205,21 @@ class SlipEnd(TransientMode):
         arrival = collocated_end(now, self._rates(now), onset, mode.parameters, tolerance)
         if arrival is None or now.time + arrival.time_left > longest:
             return None
-        motion, numbers = self.motion, (*mode.parameters, longest, 0.0)
-        for probe in range(PROBES_OF_SLIP_END + 1):
-            later = arrival.at(probe / PROBES_OF_SLIP_END or ALMOST)
+        probes = [probe / PROBES_OF_SLIP_END for probe in range(PROBES_OF_SLIP_END + 1)]
+        rows = arrival.rows([*probes, ALMOST])
+        if passes_flat(self.top, rows[:-1]):
+            return None
+        clocks = list[Row]()
+        for later in rows[1:]:
             xi = tuple(later[mode.count :])
             unit = scaled(1.0 / size(xi), xi)
-            clock = (*later[: mode.count], *unit, size(xi), now.time)
-            if not all(
-                one.value(clock, numbers) > 0.0
-                for one in motion.guards
-                if one.name not in CLOCK_GUARDS
-            ):
+            clocks.append((*later[: mode.count], *unit, size(xi), now.time))
+        motion = self.motion
+        values = guard_values(motion, (*mode.parameters, longest, 0.0), clocks)
+        for guard, along in zip(motion.guards, values, strict=True):
+            if guard.name not in CLOCK_GUARDS and min(along) <= 0.0:
                 return None
-        rows = [arrival.at(probe / PROBES_OF_SLIP_END) for probe in range(PROBES_OF_SLIP_END + 1)]
-        return None if passes_flat(self.top, rows) else arrival
+        return arrival
 
     def _in_time(self, arcs: Sequence[Arc], onwards: DenseSolution) -> DenseSolution:
         """Return the numbers of the mode as polynomials in time: from the clock's, and onwards."""

@@ -52,7 +52,7 @@ def variational_motion(motion: Motion, directions: int) -> Motion:
         return [value_of(one) for one in outputs], slopes
 
     every = 1 + directions
-    return Motion(rates, size * every, count * every, (), motion.lasting)
+    return Motion(rates, size * every, count * every, (), motion.lasting, motion)
 
 
 def followed(

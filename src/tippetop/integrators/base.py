@@ -79,6 +79,10 @@ class Motion:
     """Conditions that end the motion."""
     lasting: bool = True
     """Whether runs may spend most of their steps in it: worth compiling for speed."""
+    varied: "Motion | None" = None
+    """The motion whose variational equations these are: its numbers come first, and then their
+    derivatives, direction by direction.
+    """
 
 
 @dataclass(frozen=True)

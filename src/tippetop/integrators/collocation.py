@@ -26,6 +26,9 @@ STAGES = 12
 PARTS = 4
 """Parts of a step, each with a polynomial that stands for it in a solution."""
 
+ORDERS = np.arange(STAGES + 1.0)
+"""Orders of Chebyshev's polynomials in a step."""
+
 LAST, SMOOTH = 2, 8
 """How many of the last coefficients tell the error of a step, and how many of the first guess at
 the next.
@@ -163,7 +166,10 @@ class Step:
         """Return the solution at a time within the step, shape (size,), or at m times, shape (m,
         size).
         """
-        return np.asarray(chebval(self._place(time), self.terms)).T
+        # For one time the cosines take an eighth of what Clenshaw's recurrence takes.
+        angle = np.arccos(np.clip(self._place(time), -1.0, 1.0))
+        values: Array = np.cos(np.multiply.outer(angle, ORDERS)) @ self.terms
+        return values
 
     def beyond(self, times: Array) -> Array:
         """Return the polynomial without its last terms at times after the step, shape (m, size)."""
@@ -176,20 +182,26 @@ class Step:
 def solved(rates: RightHandSide, start: Array, span: float, guess: Array) -> Array | None:
     """Return the states at the points of a step, shape (s, size), by Newton's method; None if it
     does not converge.
+
+    Of variational equations all directions and the numbers have one matrix, as if the derivatives
+    did not depend on the numbers: they converge an iteration after these.
     """
-    integrals, size, states, last = span * radau_points().integrals, len(start), guess, np.inf
+    integrals, states, last = span * radau_points().integrals, guess, np.inf
     for _ in range(STAGE_CORRECTIONS):
         values, slopes = rates.linearized(states)
         if not (np.all(np.isfinite(values)) and np.all(np.isfinite(slopes))):
             return None
+        size = slopes.shape[1]
         matrix = -np.einsum("ij,jab->iajb", integrals, slopes).reshape(STAGES * size, STAGES * size)
         matrix[np.diag_indices_from(matrix)] += 1.0
+        errors = (start + integrals @ values - states).reshape(STAGES, -1, size)
         try:
-            change = np.linalg.solve(matrix, (start + integrals @ values - states).ravel())
+            columns = np.linalg.solve(matrix, errors.swapaxes(1, 2).reshape(STAGES * size, -1))
         except np.linalg.LinAlgError:
             return None
-        states = states + change.reshape(states.shape)
-        moved = float(np.max(np.abs(change.reshape(states.shape)) / scale(states)))
+        change = columns.reshape(STAGES, size, -1).swapaxes(1, 2).reshape(states.shape)
+        states = states + change
+        moved = float(np.max(np.abs(change) / scale(states)))
         if moved <= SETTLED or ROUGH >= moved >= 0.5 * last:
             return states
         last = moved

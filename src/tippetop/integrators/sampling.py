@@ -10,6 +10,7 @@ import numpy as np
 
 from tippetop.integrators.base import Arc, Array, Motion
 from tippetop.integrators.dense import DenseSolution, chebyshev
+from tippetop.integrators.guard_functions import guard_functions
 from tippetop.integrators.rates import RightHandSide
 from tippetop.integrators.zero_crossings import Dense, first_fall
 
@@ -51,7 +52,7 @@ class StepByStep(ABC):
         rates, places = RightHandSide(motion, parameters), chebyshev(self.degree)[0].tolist()
         (begin, state), counted = start, 0
         knots, values = [begin], list[Array]()
-        guards = [guard.with_parameters(parameters) for guard in motion.guards]
+        guards = guard_functions(motion, parameters)
 
         def keep(until: float, dense: Dense) -> None:
             values.append(

@@ -101,7 +101,7 @@ def _fall_along(
     ] + [end]
     states = [dense(time) for time in probes]
     for index, guard in enumerate(guards):
-        values = [_value_of(guard, state) for state in states]
+        values = [value_of(guard, state) for state in states]
         value, exact = _along(guard, dense), _along(guard, advance)
         for low, high, function in brackets(probes, values, value, exact):
             time = crossing(function, low, high)
@@ -115,10 +115,10 @@ def _fall_along(
 
 def _along(guard: StateFunction, solution: Dense) -> TimeFunction:
     """Return a guard along a solution, as a function of time; infinite at a pole of the guard."""
-    return lambda time: _value_of(guard, solution(time))
+    return lambda time: value_of(guard, solution(time))
 
 
-def _value_of(guard: StateFunction, state: Array) -> float:
+def value_of(guard: StateFunction, state: Array) -> float:
     """Return the value of a guard; infinite at a pole, before which another guard may fall."""
     try:
         return guard(state)
@@ -193,7 +193,7 @@ def _polished(
     shift = min(1e-4 * (end - start), 0.1 * (guess - start))
     time, previous = guess, guess - shift if guess - shift > start else guess + shift
     state, beside = advance(time), advance(previous)
-    value, theirs = (_value_of(guard, one) for one in (state, beside))
+    value, theirs = (value_of(guard, one) for one in (state, beside))
     moved, finest = shift, 1e-3 * shift
     for _ in range(8):
         if not 0.0 < abs(value - theirs) < math.inf:
@@ -205,7 +205,7 @@ def _polished(
             break
         time, previous, beside, theirs = new, time, state, value
         state = advance(new)
-        value = _value_of(guard, state)
+        value = value_of(guard, state)
     if moved > max(finest, 4e-16 * max(1.0, abs(time))) or abs(time - guess) > 0.5 * (
         guess - start
     ):

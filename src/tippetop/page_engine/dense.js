@@ -38,6 +38,11 @@ export function expanded(motion, parameters, state) {
   ];
 }
 
+/** Values of each guard of a motion in several states. */
+export function guard_values(motion, parameters, states) {
+  return motion.guards.map((guard) => states.map((state) => guard.value(state, parameters)));
+}
+
 export class DenseSolution {
   /** Knots, and coefficients [step][number][power], in a row, in powers of the part of a step that has passed. */
   constructor(knots, terms, size) {
