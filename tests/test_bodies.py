@@ -88,30 +88,6 @@ def test_a_disk_that_does_not_spin_falls_flat() -> None:
     assert float(run["energy_error"]) < 1e-9
 
 
-def test_sweeps_find_disks_lying_flat_as_runs_do() -> None:
-    problem = tt.Problem(
-        body=DISK,
-        friction=tt.ViscousFriction(mu=1.0),
-        launch=tt.Launch(tilt=0.3, spin=0.0),
-        gravity=9.81,
-    )
-    found = tt.sweep(
-        problem, {"launch.spin": [0.0, 40.0], "launch.tilt": [0.0, 0.3]}, duration=0.2, workers=1
-    )
-    for spin in (0.0, 40.0):
-        run = tt.simulate(problem.replace({"launch.spin": spin}), 0.2)
-        cell = found.sel(spin=spin, tilt=0.3)
-        assert float(cell["end_time"]) == pytest.approx(float(run["end_time"]), rel=1e-9)
-        assert float(cell["final_tilt"]) == pytest.approx(float(run["final_tilt"]), abs=1e-9)
-        flat = found.sel(spin=spin, tilt=0.0)
-        run = tt.simulate(problem.replace({"launch.spin": spin, "launch.tilt": 0.0}), 0.2)
-        for name in ("final_spin", "energy_lost", "energy_lost_drilling", "final_tilt"):
-            assert float(flat[name]) == pytest.approx(float(run[name]), rel=1e-9, abs=1e-15)
-    fallen = tt.simulate(problem, 0.2)
-    assert fallen["event_kind"].values[-1] == "lies down"
-    assert float(fallen["event_time"][-1]) < 0.1
-
-
 LAWS = {
     "viscous": tt.ViscousFriction(mu=0.3),
     "coulomb": tt.CoulombFriction(mu=0.1),
@@ -151,20 +127,6 @@ def test_a_coin_thrown_onto_its_face_slips_until_it_lies_flat(
     theta = tilts if rate < 0.0 else math.pi - tilts
     assert theta[-1] == pytest.approx(0.0, abs=1e-9)
     assert (np.diff(theta) < 0.0).all()
-
-
-def test_coins_that_slip_until_they_lie_flat_do_the_same_in_a_sweep() -> None:
-    launch = tt.Launch(tilt=0.2, spin=0.0, tilt_rate=-40.0)
-    problem = tt.Problem(body=tt.presets.COIN, friction=LAWS["coulomb"], launch=launch)
-    swept = tt.sweep(problem, {"launch.tilt": [0.18, 0.2]}, duration=0.1, workers=1)
-    for tilt in (0.18, 0.2):
-        run, cell = (
-            tt.simulate(problem.replace({"launch.tilt": tilt}), 0.1),
-            swept.sel(tilt=tilt),
-        )
-        assert float(cell["final_tilt"]) == pytest.approx(0.0, abs=1e-9)
-        assert float(cell["end_time"]) == pytest.approx(float(run["end_time"]), rel=1e-9)
-        assert float(cell["energy_lost"]) == pytest.approx(float(run["energy_lost"]), rel=1e-9)
 
 
 @pytest.mark.parametrize("body", [DISK, BALLS])

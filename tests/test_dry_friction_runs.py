@@ -131,18 +131,6 @@ def test_what_friction_takes_is_what_the_energy_loses(law):
     assert float(run["energy_lost"]) == pytest.approx(energy[0] - energy[-1], rel=1e-10)
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_sweeps_find_what_runs_find(law):
-    problem = dry(law, slip=[0.3, 0.0])
-    spins = [60.0, 120.0]
-    found = tt.sweep(problem, {"launch.spin": spins}, duration=0.4, workers=1)
-    for spin in spins:
-        run = tt.simulate(problem.replace({"launch.spin": spin}), 0.4)
-        here = found.sel(spin=spin)
-        for name in ("energy_lost", "min_normal_force"):
-            assert float(here[name]) == pytest.approx(float(run[name]), rel=1e-9), (spin, name)
-
-
 def test_the_command_line_finds_the_same():
     changes = [
         "--set",
@@ -200,26 +188,6 @@ def test_hertz_gives_the_radius():
     stiffness = 1.0 / ((1 - 0.23**2) / 69e9 + (1 - 0.30**2) / 207e9)
     radius = tt.hertz_patch_radius(0.06, 0.015, tt.MATERIALS["glass"], tt.MATERIALS["steel"])
     assert radius**3 * 4.0 * stiffness == pytest.approx(3.0 * 0.06 * 0.015)
-
-
-@pytest.mark.parametrize("liftoff", ["stop", "ignore", "fly"])
-def test_a_sweep_changes_between_the_branches_of_hertz_as_a_run_does(liftoff):
-    problem = dry("hertz").replace({"contact.liftoff": liftoff, "launch.tilt": 0.1})
-    spins = [100.0, 172.0, 185.0]
-    found = tt.sweep(problem, {"launch.spin": spins}, duration=1.0, workers=1, tolerance=1e-13)
-    for spin in spins:
-        run = tt.simulate(problem.replace({"launch.spin": spin}), 1.0)
-        here = found.sel(spin=spin)
-        turning = run.precession * np.sin(run.tilt) ** 2 + run.spin * np.cos(run.tilt)
-        drilling = np.abs(turning) * problem.friction.patch_radius > np.hypot(
-            run.slip_x, run.slip_y
-        )
-        assert 0.0 < float(drilling.mean()) < 1.0
-        for name in ("energy_lost", "min_normal_force", "max_height", "flights", "airborne_time"):
-            assert float(here[name]) == pytest.approx(float(run[name]), rel=1e-8, abs=1e-12), (
-                spin,
-                name,
-            )
 
 
 @pytest.mark.parametrize(("slip", "mode"), [(1e-3, ContactMode), (-1e-3, SlipEnd)])

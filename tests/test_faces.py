@@ -134,23 +134,6 @@ def test_a_body_launched_at_rest_on_its_face_rests() -> None:
     )
 
 
-def test_sweeps_follow_faces_as_runs_do() -> None:
-    problem = launched(0.3, 20.0, contact=tt.Contact(face_pressure="rim"))
-    swept = tt.sweep(
-        problem,
-        {"launch.spin": [0.0, 20.0], "launch.tilt": [0.0, math.pi]},
-        duration=5.0,
-        workers=1,
-    )
-    for spin in (0.0, 20.0):
-        for tilt in (0.0, math.pi):
-            run = tt.simulate(problem.replace({"launch.spin": spin, "launch.tilt": tilt}), 5.0)
-            cell = swept.sel(spin=spin, tilt=tilt)
-            assert cell["outcome"] == run["outcome"] == "at_rest"
-            for name in ("end_time", "energy_lost_drilling", "energy_lost_sliding", "final_spin"):
-                assert float(cell[name]) == pytest.approx(float(run[name]), rel=1e-9)
-
-
 def test_a_wobbling_disk_goes_on_spinning_on_its_face() -> None:
     """It comes down with the spin that it has then, which only drilling takes from it."""
     disk = tt.Body(mass=0.1, shape=tt.Ring(radius=0.02, center=-0.005), I1=1.2e-5, I3=2e-5)

@@ -290,28 +290,6 @@ def test_a_coin_tossed_without_spin_tumbles_on_its_edges_until_it_lies_flat(fric
     assert turned, "it is to pass flat on its way"
 
 
-def test_a_coin_tossed_without_spin_does_the_same_in_a_sweep():
-    problem = tt.Problem(
-        body=tt.presets.COIN,
-        friction=tt.ViscousFriction(mu=0.3),
-        launch=tt.Launch(tilt=1.2, spin=0.0, gap=0.01),
-        contact=tt.Contact(restitution=0.5),
-    )
-    rings = problem.replace(
-        {"body": tt.Body(mass=0.0075, shape=tt.Ring(radius=0.0116), I1=2.6e-7, I3=5.1e-7)}
-    )
-    for one in (problem, rings):
-        swept = tt.sweep(one, {"launch.tilt": [0.8, 1.2, 1.9]}, duration=0.3, workers=1)
-        for tilt in (0.8, 1.2, 1.9):
-            run, cell = (
-                tt.simulate(one.replace({"launch.tilt": tilt}), 0.3),
-                swept.sel(tilt=tilt),
-            )
-            assert "lies down" in run.event_kind.values
-            for name in ("end_time", "flights", "max_gap", "airborne_time", "final_tilt"):
-                assert float(cell[name]) == pytest.approx(float(run[name]), rel=1e-7), (tilt, name)
-
-
 def test_a_flight_that_is_cut_short_rose_no_higher_than_it_was_followed():
     """It rises as its centre of mass does, whose height is a parabola in time, to within its
     size.

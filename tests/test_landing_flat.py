@@ -175,17 +175,6 @@ def test_a_flat_disk_that_comes_down_on_its_other_side_lies_down() -> None:
     assert float(run["energy_error"]) < 1e-11  # the law of a slap is used for the last 1e-6
 
 
-def test_sweeps_follow_faces_that_land_as_runs_do() -> None:
-    problem = dropped(DISK, 0.3, 0.5, gap=0.01, velocity=(0.4, 0.1, 0.0))
-    swept = tt.sweep(problem, {"launch.spin": [0.0, 30.0]}, duration=1.0, workers=1)
-    for spin in (0.0, 30.0):
-        run, cell = tt.simulate(problem.replace({"launch.spin": spin}), 1.0), swept.sel(spin=spin)
-        assert cell["outcome"] == run["outcome"] == "at_rest"
-        assert int(cell["flights"]) == int(run["flights"])
-        for name in ("end_time", "energy_lost", "energy_lost_sliding", "airborne_time"):
-            assert float(cell[name]) == pytest.approx(float(run[name]), rel=1e-9)
-
-
 @pytest.mark.parametrize("seed", range(16))
 def test_what_an_impact_of_a_face_leaves_is_possible(seed: int) -> None:
     """The face has stopped sinking, v_n >= a1 |omega_h|, the impulse is one that the table can

@@ -135,15 +135,6 @@ def test_derivatives_are_differences_of_runs(name: str, field: str) -> None:
     assert found == pytest.approx(difference, rel=1e-7)
 
 
-def test_a_sweep_is_its_runs() -> None:
-    problem = REPORT.replace({"friction": LAWS["exp"][0]})
-    swept = tt.sweep(problem, {"launch.spin": [150.0, 155.0]}, duration=DURATION, workers=1)
-    for spin in (150.0, 155.0):
-        run = tt.simulate(problem.replace({"launch.spin": spin}), DURATION, samples=3)
-        cell = swept.sel(spin=spin)
-        assert float(cell["final_tilt"]) == pytest.approx(float(run["final_tilt"]), rel=1e-9)
-
-
 @pytest.mark.parametrize(
     ("function", "expected"),
     [

@@ -336,24 +336,6 @@ def test_straight_slip_on_two_ends_when_friction_has_taken_it(tolerance: float |
         )
 
 
-def test_sweeps_find_what_runs_find() -> None:
-    problem = dumbbell(velocity=(0.0, 0.2, 0.0))
-    arms = [2e-4, 2e-3]
-    found = tt.sweep(problem, {"rolling_resistance": arms}, duration=0.4, tolerance=1e-14)
-    rested = []
-    for i, arm in enumerate(arms):
-        run = tt.simulate(problem.replace({"rolling_resistance": arm}), 0.4, samples=3)
-        cell = found.isel({"rolling_resistance": i})
-        rested.append(run.attrs["status"] == "at_rest")
-        assert bool(cell["outcome"] == "at_rest") is rested[-1]
-        size = float(run["initial_energy"])
-        for name in ("end_time", "final_spin", "energy_lost_sliding", "energy_lost_rolling"):
-            assert float(cell[name]) == pytest.approx(
-                float(run[name]), rel=1e-9, abs=1e-11 * size
-            ), name
-    assert rested == [False, True]
-
-
 @pytest.mark.slow
 def test_rolling_may_begin_while_slip_on_two_contacts_ends() -> None:
     """Two balls on a stick, lying: what friction takes is what is lost, and in the end nothing

@@ -167,41 +167,6 @@ def test_losses_add_up_to_the_energy_lost():
         assert np.all(np.diff(run[f"{name}_loss"].values) > -1e-12 * sum(parts))
 
 
-def test_sweeps_find_what_runs_find():
-    problem = REPORT.model_copy(update={"friction": PATCHES[1], "rolling_resistance": ARM})
-    arms, spins, duration = [0.0, 4e-4], [5.0], 1.2
-    problem = problem.replace({"launch.tilt": 0.5})
-    found = tt.sweep(
-        problem,
-        {"rolling_resistance": arms, "launch.spin": spins},
-        duration=duration,
-        tolerance=1e-15,
-    )
-    names = (
-        "final_tilt",
-        "end_time",
-        *(f"energy_lost_{how}" for how in ("sliding", "drilling", "rolling")),
-    )
-    outcomes = set()
-    for i, arm in enumerate(arms):
-        for j, spin in enumerate(spins):
-            run = tt.simulate(
-                problem.replace({"rolling_resistance": arm, "launch.spin": spin}),
-                duration,
-                samples=3,
-            )
-            cell = found.isel(rolling_resistance=i, spin=j)
-            scale = float(run["initial_energy"])
-            for name in names:
-                assert float(cell[name]) == pytest.approx(
-                    float(run[name]), rel=1e-9, abs=1e-11 * scale
-                ), name
-            rested = bool(cell["outcome"] == "at_rest")
-            assert rested == (run.attrs["status"] == "at_rest")
-            outcomes.add(rested)
-    assert outcomes == {True, False}
-
-
 def test_jelletts_integral_and_the_theory_know_of_it():
     problem = REPORT.model_copy(update={"rolling_resistance": 1e-5})
     assert top_of(REPORT).conserves_jellett

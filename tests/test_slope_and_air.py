@@ -279,30 +279,6 @@ def test_without_slope_and_air_nothing_changes():
         assert (level[name].values == explicit[name].values).all()
 
 
-def test_sweep_equals_runs():
-    problem = bodies()["dry"].replace(AIR)
-    axes = {"launch.spin": [100.0, 155.0], "table.slope": [0.0, 0.05]}
-    swept = tt.sweep(problem, axes, duration=0.5)
-    for i, spin in enumerate(axes["launch.spin"]):
-        for j, slope in enumerate(axes["table.slope"]):
-            run = tt.simulate(
-                problem.replace({"launch.spin": spin, "table.slope": slope}), duration=0.5
-            )
-            for name in ("final_tilt", "energy_lost", "energy_lost_air", "end_time"):
-                cell = float(swept[name].values[i, j])
-                assert cell == pytest.approx(float(run[name]), rel=1e-8, abs=1e-15)
-
-
-def test_a_cell_without_slope_and_air_settles_as_its_run():
-    problem = tt.presets.report_problem()
-    run = tt.simulate(problem, duration=10.0)
-    for name, values in (("table.slope", [0.0, 0.01]), ("air.axial_linear", [0.0, 1e-8])):
-        swept = tt.sweep(problem, {name: values}, duration=10.0)
-        assert swept["outcome"].values[0] == run["outcome"].item() == "inverted"
-        assert float(swept["arrival_time"][0]) == pytest.approx(float(run["arrival_time"]))
-        assert not bool(swept["is_settled"][1])
-
-
 @pytest.mark.parametrize("name", ["table.slope", "air.axial_linear"])
 def test_runs_that_end_where_they_are_held_for_good_have_neither_slope_nor_air(name):
     with pytest.raises(tt.InvalidInput, match=f"settled.*{name} is swept"):

@@ -23,8 +23,6 @@ from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surfaces.surface import contact_vector
 from tippetop.mechanics.top import natural, natural_units
 from tippetop.problem.problem import top_of
-from tippetop.results.catalogue import SWEPT, Fault
-from tippetop.results.cf_flags import decoded
 
 LEINE_GLOCKER = tt.Problem(
     body=tt.Body(
@@ -252,25 +250,6 @@ def test_jellett_s_integral_is_that_of_the_surface_that_touches_in_whatever_orde
         assert set(run["event_kind"].values) == set()
         assert float(run["jellett_drift"]) < 1e-13
         assert float(run["jellett_change"]) < 1e-13
-
-
-def test_sweeps_follow_stems_as_runs_do() -> None:
-    axes = {"body.shape.1.center": [0.005, 0.026, 0.028], "launch.spin": [120.0, 155.0]}
-    found = tt.sweep(REPORT, axes, duration=7.0, tolerance=1e-14, workers=1, decode=False)
-    assert (found["fault"].sel(center=0.005) == Fault.VALUE_OUT_OF_RANGE).all()
-    for center in axes["body.shape.1.center"][1:]:
-        for spin in axes["launch.spin"]:
-            changes = {"body.shape.1.center": center, "launch.spin": spin}
-            run = tt.simulate(REPORT.replace(changes), 7.0, samples=11)
-            here = decoded(found.sel(center=center, spin=spin))
-            assert str(here["outcome"].item()) == str(run["outcome"].item())
-            for name in set(SWEPT) & set(run.variables) - {"steps", "outcome"}:
-                one, other = float(found[name].sel(center=center, spin=spin)), float(run[name])
-                assert one == pytest.approx(other, rel=1e-9, abs=1e-12, nan_ok=True), (
-                    name,
-                    changes,
-                )
-    assert found["center"].attrs["units"] == "m"
 
 
 ROD = tt.Problem(

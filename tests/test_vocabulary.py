@@ -161,16 +161,6 @@ def test_truth_values_are_booleans_and_say_so() -> None:
     assert not bool(swept["is_settled"].any())
 
 
-def test_an_outcome_is_the_same_word_in_a_run_and_in_a_sweep() -> None:
-    problem, spins = tt.presets.report_problem(), [10.0, 155.0, 500.0]
-    swept = tt.sweep(problem, {"launch.spin": spins}, duration=8.0, workers=1)
-    for spin, word in zip(spins, swept["outcome"].values, strict=True):
-        run = tt.simulate(problem.replace({"launch.spin": spin}), 8.0, samples=2)
-        assert run["outcome"].item() == word
-        assert tt.Outcome[word.upper()].name.lower() == word
-        assert tt.Status[run.attrs["status"].upper()]
-
-
 def test_the_glossary_lists_the_names_that_are_used() -> None:
     rows = [
         line.split("|") for line in GLOSSARY.read_text("utf-8").splitlines() if line[:3] == "| `"

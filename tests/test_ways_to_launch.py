@@ -123,17 +123,6 @@ def test_a_horizontal_launch_does_not_begin_with_an_impact() -> None:
     assert "impact" in struck["event_kind"].values[struck["event_time"].values == 0.0]
 
 
-def test_sweeps_launch_the_same() -> None:
-    base = PROBLEM.replace({"launch.tilt_rate": 3.0, "launch.velocity": (0.1, 0.0)})
-    heights = [-0.2, 0.0]
-    found = tt.sweep(base, {"launch.velocity.2": heights}, duration=0.05, workers=1)
-    for place, up in enumerate(heights):
-        alone = tt.simulate(base.replace({"launch.velocity.2": up}), 0.05, samples=2)
-        assert found["final_tilt"].values[place] == pytest.approx(
-            float(alone["tilt"][-1]), rel=1e-7
-        )
-
-
 @pytest.mark.parametrize("ratio", [1.0, 1e3, 1e6, 1e9, 1e12])
 @pytest.mark.parametrize("tilt", [0.1, 1.0, 2.5])
 def test_the_spin_of_a_launch_keeps_its_digits(ratio: float, tilt: float) -> None:

@@ -223,18 +223,6 @@ def test_strong_friction_is_the_same_by_taylor_alone():
         assert usual[name].values == pytest.approx(alone[name].values, abs=1e-10 * size), name
 
 
-def test_a_sweep_follows_stiff_launches_as_runs_are():
-    values = [0.3, 1e6]
-    swept = tt.sweep(stiff(0.3), {"friction.mu": values}, duration=1.0)
-    for mu, cell in zip(values, range(2), strict=True):
-        run = tt.simulate(stiff(mu), 1.0, samples=11)
-        assert swept["steps"].values[cell] < 4 * PATIENCE
-        for name in ("final_tilt", "final_spin", "min_normal_force", "energy_lost", "arrival_time"):
-            assert swept[name].values[cell] == pytest.approx(
-                run[name].item(), rel=1e-7, abs=1e-12, nan_ok=True
-            ), name
-
-
 def test_drilling_that_dies_on_a_small_patch_is_followed():
     friction = tt.ContensouFriction(mu=0.3, patch_radius=1e-7, pressure="ellipsoidal")
     problem = tt.presets.report_problem(tilt=0.3, spin=20.0).replace({"friction": friction})

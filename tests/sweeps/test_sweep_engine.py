@@ -1,4 +1,4 @@
-"""The engine against single runs, against itself, and against what must hold."""
+"""The engine against itself, and against what must hold."""
 
 import math
 
@@ -12,10 +12,8 @@ from tippetop.mechanics.series import horner
 from tippetop.problem.bodies import Body
 from tippetop.problem.frictions import RegularizedCoulombFriction
 from tippetop.problem.presets import report_problem
-from tippetop.problem.problem import Problem
 from tippetop.problem.shapes import Spheroid
 from tippetop.results.catalogue import METRICS
-from tippetop.results.summary import summarize
 from tippetop.run import simulate
 from tippetop.support.errors import InvalidInput
 from tippetop.sweeps import (
@@ -39,109 +37,6 @@ from tippetop.sweeps.taylor_step import Layout, expansion, order_for, stride
 from tippetop.sweeps.taylor_stepper import NumPyArithmetic, stepper
 
 EGG = Body(mass=0.05, shape=Spheroid(across=0.02, along=0.03), I1=9e-6, I3=5e-6)
-
-
-def check_against_runs(sweep, cells=None, closeness=1e-7, **options):
-    """Every observable of cells against a single run of the problem each; return the cells'
-    values.
-    """
-    found = follow_cells(sweep, np.arange(sweep.cells))
-    for cell in range(sweep.cells) if cells is None else cells:
-        samples = 4001 if options else int(5000 * sweep.duration) + 1
-        run = truth(problem_of(sweep, cell), sweep.duration, samples, **options)
-        summary = summarize(run)
-        here = {name: values[cell] for name, values in found.items()}
-        step = sweep.duration / (samples - 1)
-        lifts = [event["time"] for event in summary["events"] if event["kind"] == "liftoff"]
-        assert here["final_tilt"] == pytest.approx(summary["final"]["tilt"], abs=closeness)
-        assert here["final_spin"] == pytest.approx(
-            summary["final"]["spin"], rel=closeness, abs=closeness
-        )
-        if summary["final"]["precession"] is not None and abs(math.sin(here["final_tilt"])) > 1e-2:
-            # A spin about an axis at rest has a precession that is rounding of it.
-            rounding = 1e-14 * abs(here["final_spin"]) / math.sin(here["final_tilt"]) ** 2
-            assert here["final_precession"] == pytest.approx(
-                summary["final"]["precession"], rel=10 * closeness, abs=max(1e-12, rounding)
-            )
-        assert here["end_time"] == pytest.approx(summary["end_time"], rel=closeness)
-        assert here["energy_lost"] == pytest.approx(
-            summary["energy_lost"], abs=closeness * summary["initial_energy"]
-        )
-        assert here["flights"] == summary["flights"]
-        assert here["airborne_time"] == pytest.approx(summary["airborne_time"], abs=closeness)
-        assert here["max_gap"] == pytest.approx(summary["max_gap"], abs=1e-7)
-        assert here["max_height"] == pytest.approx(float(run["height"].max()), rel=1e-4)
-        assert here["jellett_change"] < 1e-9 or run.attrs["problem"].find("spheroid") > 0
-        if lifts:
-            assert here["liftoff_time"] == pytest.approx(lifts[0], abs=closeness)
-        else:
-            assert np.isnan(here["liftoff_time"])
-        if lifts or summary["flights"]:
-            assert here["min_normal_force"] == 0.0
-        else:
-            least = float(run["normal_force"].min())
-            assert here["min_normal_force"] == pytest.approx(
-                least, abs=1e-3 * float(run["normal_force"].max())
-            )
-            assert here["min_normal_force"] < least + 1e-9
-        if summary["turnover_time"] is None:
-            assert np.isnan(here["turnover_time"])
-        else:
-            assert here["turnover_time"] == pytest.approx(summary["turnover_time"], abs=step)
-        assert here["is_settled"] == summary["is_settled"]
-        for name in ("arrival_time", "max_tilt_ever"):
-            if summary[name] is None:
-                assert np.isnan(here[name])
-            else:
-                assert here[name] == pytest.approx(summary[name], abs=1e-6)
-    return found
-
-
-@pytest.mark.parametrize("liftoff", ["fly", "stop", "ignore"])
-def test_cells_are_single_runs(liftoff):
-    found = check_against_runs(lively(liftoff))
-    lifted = np.isfinite(found["liftoff_time"])
-    assert lifted.any() == (liftoff != "ignore")
-    assert (found["flights"].sum() > 10) == (liftoff == "fly")
-    assert np.array_equal(found["outcome"] == Outcome.LIFTED_OFF, lifted & (liftoff == "stop"))
-
-
-def test_a_top_that_turns_over_is_a_single_run():
-    axes = Axis.of("launch.spin", [20.0, 50.0, 155.0, 180.0]), Axis.of("friction.mu", [0.3])
-    found = check_against_runs(Sweep(report_problem(), Product(axes), 12.0, 1e-12))
-    assert found["outcome"].tolist() == [
-        Outcome.UPRIGHT,
-        Outcome.TILTED,
-        Outcome.INVERTED,
-        Outcome.MOVING_INVERTED,
-    ]
-    assert found["flights"][3] > 0
-
-
-def test_other_shapes_and_friction_laws_are_single_runs():
-    egg = Problem(
-        body=EGG,
-        friction=RegularizedCoulombFriction(mu=0.3, eps=0.01),
-        launch={"tilt": 1.5, "spin": 0.0},
-    )
-    egg = egg.replace({"launch.precession": 150.0, "contact.liftoff": "ignore"})
-    axis = Axis.of("launch.precession", [60.0, 150.0])
-    check_against_runs(Sweep(egg, Product((axis,)), 0.6, 1e-12), closeness=1e-6)
-    flying = egg.replace({"contact.liftoff": "fly"})
-    check_against_runs(Sweep(flying, Product((axis,)), 0.6, 1e-12), closeness=1e-6)
-
-
-def test_thrown_and_bouncing_tops_are_single_runs():
-    problem = report_problem(spin=100.0, tilt=0.5).replace({"contact.restitution": 0.5})
-    axes = Axis.of("launch.gap", [0.0, 0.002, 0.01]), Axis.of("contact.restitution", [0.0, 0.6])
-    found = check_against_runs(Sweep(problem, Product(axes), 0.4, 1e-12), closeness=1e-6)
-    assert np.all(found["flights"][2:] > 0)
-    assert np.all(found["flights"][[3, 5]] > found["flights"][[2, 4]])
-
-
-def test_the_engine_agrees_with_another_method():
-    sweep = lively("fly", 2, 2, 1.3, 1e-12)
-    check_against_runs(sweep, cells=[3], closeness=1e-6, integrator="dop853", tolerance=1e-13)
 
 
 def test_a_cell_does_not_depend_on_its_neighbours():
@@ -280,32 +175,6 @@ def test_lift_off_is_not_left_to_looks(monkeypatch):
     stepper.cache_clear()
     assert np.isfinite(usual["liftoff_time"]).sum() >= 5
     assert found["liftoff_time"] == pytest.approx(usual["liftoff_time"], rel=1e-12, nan_ok=True)
-
-
-@pytest.mark.parametrize("liftoff", ["fly", "ignore"])
-def test_launches_that_begin_beyond_a_right_angle_are_single_runs(liftoff):
-    """Some fall back upright, some swing, some are thrown; none turns over merely because it is
-    there.
-    """
-    problem = report_problem(spin=155.0).replace(
-        {"contact.liftoff": liftoff, "launch.precession": -40.0}
-    )
-    # With the faster spin a table that pulls drives the top until its motion is singular.
-    spins = Axis.of("launch.spin", [5.0, 155.0] if liftoff == "fly" else [5.0])
-    axes = Axis.of("launch.tilt", [1.6, 2.0, 2.5]), spins
-    found = check_against_runs(Sweep(problem, Product(axes), 0.8, 1e-12), closeness=1e-6)
-    assert np.isnan(found["turnover_time"]).any() == (liftoff == "fly")
-    if liftoff == "fly":
-        gaps = Axis.of("launch.gap", [0.003, 0.05]), Axis.of("launch.tilt", [2.0, 3.0])
-        check_against_runs(Sweep(report_problem(), Product(gaps), 0.3, 1e-12), closeness=1e-6)
-
-
-def test_a_launch_that_ends_in_its_first_flight_has_not_settled():
-    axis = Axis.of("launch.gap", [0.5, 50.0])
-    sweep = Sweep(report_problem(), Product((axis,)), 0.2, 1e-12)
-    found = check_against_runs(sweep, closeness=1e-6)
-    assert np.all(np.isnan(found["arrival_time"]))
-    assert np.all(found["outcome"] == Outcome.MOVING_UPRIGHT)
 
 
 def test_a_flight_that_cannot_be_followed_is_said_to_have_failed(monkeypatch):
