@@ -15,7 +15,7 @@ from tippetop.contact.trajectory import LONGEST_RUN, Trajectory
 from tippetop.graph.own_parts import require_recordable
 from tippetop.integrators import make_integrator
 from tippetop.integrators.base import Array
-from tippetop.mechanics.quadratures import orientation
+from tippetop.mechanics.quadratures import nearer_pole, orientation, turn_at_launch
 from tippetop.mechanics.vectors import add
 from tippetop.problem.problem import Problem, require_problem, top_of
 from tippetop.results.motion_state import MotionState
@@ -107,8 +107,8 @@ class Stepper:
             self._problem = problem
         self._launch = launch = NaturalLaunch.of(self._problem)
         self._next, self._state, self._time = launch.first, launch.state, 0.0
-        pole = 1.0 if launch.state.axis[2] >= 0.0 else -1.0
-        self._turn, self._pole, self._place = pole * launch.azimuth, pole, (0.0, 0.0)
+        self._pole = float(nearer_pole(launch.state.axis[2]))
+        self._turn, self._place = turn_at_launch(launch.azimuth, self._pole), (0.0, 0.0)
         recorder = self._recorder(0.0)
         return self._step_state(recorder.finish(0.0, launch.state, early=True), recorder, (), 0.0)
 

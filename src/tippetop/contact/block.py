@@ -12,6 +12,7 @@ from tippetop.contact.mode import Mode, Segment
 from tippetop.contact.readings import WORTH, Rates, instants, is_compiled, normal_force, read
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, evaluated
+from tippetop.mechanics.quadratures import nearer_pole
 from tippetop.mechanics.state import State
 
 STEPS = 4096
@@ -55,13 +56,13 @@ class ModeSteps:
     @property
     def poles(self) -> Array:
         """The charts in which these have the angle about the axis, shape (k,)."""
-        return nearer_pole(Rates(*self.nodes).axis)
+        return poles_of_steps(Rates(*self.nodes).axis)
 
     def at(self, fractions: Array) -> Array:
         """`Rates` at fractions of the steps, shape (m,); of shape (9, m, k)."""
         y = at_fractions(self.terms, fractions)
         total = self.total(len(NODES) * len(self.which))
-        return read(Rates.of, self.mode, y, nearer_pole(y[2]), total=total)
+        return read(Rates.of, self.mode, y, poles_of_steps(y[2]), total=total)
 
     def force_at(self, fractions: Array, some: NDArray[np.intp]) -> Array:
         """Return the normal force at fractions of some steps, shape (m,); of shape (m, k)."""
@@ -70,7 +71,7 @@ class ModeSteps:
             self.total(len(NODES) * len(self.which)),
         )
         if is_compiled(self.mode, total):  # by the function of `nodes`, which is compiled already
-            force = read(Rates.of, self.mode, y, nearer_pole(y[2]), total=total)[FORCE]
+            force = read(Rates.of, self.mode, y, poles_of_steps(y[2]), total=total)[FORCE]
         else:
             force = read(normal_force, self.mode, y)[0]
         return np.asarray(force)
@@ -81,12 +82,13 @@ class ModeSteps:
         return np.ascontiguousarray(self.terms[:, :, 0].T)
 
 
-def nearer_pole(n_z: Array) -> Array:
+def poles_of_steps(n_z: Array) -> Array:
     """Return +1 or -1, the pole to which the axis comes nearest within each step, shape (k,).
 
     `n_z` are the axis's vertical components at m instants of each step, shape (m, k).
     """
-    return np.where(n_z.min(axis=0) + n_z.max(axis=0) >= 0.0, 1.0, -1.0)
+    poles: Array = nearer_pole(n_z.min(axis=0) + n_z.max(axis=0))
+    return poles
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from tippetop.mechanics.motion import angular_velocity, axial_spin, axis_rate
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
-from tippetop.mechanics.vectors import Functions, Scalar, Vector
+from tippetop.mechanics.vectors import Functions, Scalar, Vector, either
 
 
 class Quadratures(NamedTuple):
@@ -25,6 +25,25 @@ class Quadratures(NamedTuple):
     """Angle psi about the axis in one of the two charts, rad."""
     work: Scalar
     """Work of friction since the start, J."""
+
+
+def nearer_pole(n_z: Scalar) -> Scalar:
+    """Return the pole, 1 (z) or -1 (-z), nearer to an axis of a vertical component n_z: of floats
+    and arrays.
+    """
+    return either(n_z < 0.0, -1.0, 1.0)
+
+
+def turn_at_launch(azimuth: Scalar, pole: Scalar) -> Scalar:
+    """Return psi in the chart of a pole, rad, where chi is zero and the axis has this azimuth."""
+    return pole * azimuth
+
+
+def turn_in_chart(turn: Scalar, azimuth: Scalar, pole: Scalar, other: Scalar) -> Scalar:
+    """Return psi in the chart of another pole, rad, from that in the chart of `pole`, for the
+    axis's azimuth.
+    """
+    return turn + (other - pole) * azimuth
 
 
 def turn_rate(axis: Vector, momentum: Vector, pole: Scalar, top: Top) -> Scalar:

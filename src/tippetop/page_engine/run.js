@@ -156,8 +156,8 @@ class Run {
     this.start = m.natural_state(problem.start(), this.units);
     m.require_limits(duration, this.units.time, ...limits);
 
-    this.pole = this.start.axis[2] >= 0 ? 1 : -1;
-    const turn = this.pole * problem.launch.azimuth;
+    this.pole = m.nearer_pole(this.start.axis[2]);
+    const turn = m.turn_at_launch(problem.launch.azimuth, this.pole);
     this.sums = Float64Array.from(m.RunSums.at_launch(turn, 0));
     this.happened = [];
     this.pushes = [];
@@ -321,11 +321,10 @@ class Run {
   integrate(segment, step) {
     const { solution, rule } = segment;
     const middle = rule.nodes[rule.nodes.length >> 1];
-    const pole = solution.value(step, AXIS_Z, middle) >= 0 ? 1 : -1;
+    const pole = m.nearer_pole(solution.value(step, AXIS_Z, middle));
     if (pole !== this.pole) {
-      // The turn is psi + pole * phi: regular near that pole, where phi and psi alone are not.
       const azimuth = Math.atan2(solution.value(step, 1, 0), solution.value(step, 0, 0));
-      this.sums[TURN] += (pole - this.pole) * azimuth;
+      this.sums[TURN] = m.turn_in_chart(this.sums[TURN], azimuth, this.pole, pole);
       this.pole = pole;
     }
     segment.sums.set(this.sums, SUMS * step);

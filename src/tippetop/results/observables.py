@@ -15,6 +15,7 @@ from tippetop.contact.trajectory import Trajectory
 from tippetop.contact.transient import TransientMode
 from tippetop.integrators.base import Array
 from tippetop.integrators.dense import at_fractions, parts_of, powers
+from tippetop.mechanics.quadratures import nearer_pole, turn_at_launch, turn_in_chart
 from tippetop.mechanics.state import State
 from tippetop.mechanics.surfaces.hull import each_surface, is_edge
 from tippetop.mechanics.top import Top
@@ -78,9 +79,9 @@ class Recorder:
         self.modes = [SLIPS, Flight.name]
         self._sampled = 0
         self._last: tuple[Block, tuple[Array, Array, Array]] | None = None
-        self._pole = 1.0 if start.axis[2] >= 0.0 else -1.0
+        self._pole = float(nearer_pole(start.axis[2]))
         self._integrals = integrals_of(top)
-        self._sums = np.array(RunSums.at_launch(self._pole * azimuth, lost))
+        self._sums = np.array(RunSums.at_launch(turn_at_launch(azimuth, self._pole), lost))
         self.monitor = Monitor(top, start, pulls)
 
     @classmethod
@@ -192,13 +193,15 @@ class Recorder:
             axis[:, group.which], poles[group.which] = group.terms[:, :2, 0].T, group.poles
         gains = np.zeros((len(self._sums), count))
         gains[:last] = np.einsum("i,qik->qk", WEIGHTS, rates) * block.spans
-        changes = poles - np.concatenate([[self._pole], poles[:-1]])
+        before = np.concatenate([[self._pole], poles[:-1]])
         # Derivatives compare runs 1e-8 apart: what thousands of sums round away would show in them.
         summed = np.concatenate([self._sums[:, None], gains], axis=1)
         values = np.cumsum(summed, axis=1, dtype=np.longdouble).astype(float)
         values[TURN] = self._sums[TURN] + evenly_summed(gains[TURN])
-        for step in np.flatnonzero(changes):
-            values[TURN, step:] += changes[step] * np.arctan2(axis[1, step], axis[0, step])
+        for step in np.flatnonzero(poles - before):
+            azimuth = np.arctan2(axis[1, step], axis[0, step])
+            turn = values[TURN, step:]
+            values[TURN, step:] = turn_in_chart(turn, azimuth, before[step], poles[step])
         lost = np.zeros(count + 1)
         for place, segment in zip(np.cumsum(block.lengths), block.segments, strict=True):
             if segment.transition is not None:

@@ -14,7 +14,13 @@ from tippetop.contact.contact_mode import sliding_motion
 from tippetop.contact.flight import SIZE, flight_motion
 from tippetop.integrators.base import Array, Motion
 from tippetop.mechanics.motion import air_power, on_table, sliding_contact
-from tippetop.mechanics.quadratures import quadrature_rates, resistance_powers
+from tippetop.mechanics.quadratures import (
+    nearer_pole,
+    quadrature_rates,
+    resistance_powers,
+    turn_at_launch,
+    turn_in_chart,
+)
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.vectors import Scalar
@@ -75,9 +81,9 @@ class LaneSums:
     def begin(self, axis: Array, sums: Array, azimuth: Array) -> None:
         """Set the angle about the axis at launch from the azimuth of the axis, rad, shape (n,)."""
         if POLE in self.names:
-            pole = nearer_pole(axis)
+            pole = nearer_pole(axis[2])
             sums[self.names.index(POLE)] = pole
-            sums[self.names.index("turn")] = pole * azimuth
+            sums[self.names.index("turn")] = turn_at_launch(azimuth, pole)
 
     def to_nearer_pole(self, axis: Array, sums: Array) -> None:
         """Take the angle about the axis to the chart of the nearer pole, where that is another.
@@ -87,11 +93,12 @@ class LaneSums:
         if POLE not in self.names:
             return
         pole, turn = (sums[self.names.index(name)] for name in (POLE, "turn"))
-        change = nearer_pole(axis) - pole
-        which = change.nonzero()[0]
+        nearer = nearer_pole(axis[2])
+        which = np.flatnonzero(nearer != pole)
         if len(which):
-            turn[which] += change[which] * np.arctan2(axis[1, which], axis[0, which])
-            pole[which] += change[which]
+            azimuth = np.arctan2(axis[1, which], axis[0, which])
+            turn[which] = turn_in_chart(turn[which], azimuth, pole[which], nearer[which])
+            pole[which] = nearer[which]
 
     def strike(self, sums: Array, lanes: Indices, lost: Array) -> None:
         """Take in the energy that some lanes lose in impacts."""
@@ -102,11 +109,6 @@ class LaneSums:
 
 NO_SUMS = LaneSums()
 """The sums of a lane that carries none."""
-
-
-def nearer_pole(axis: Array) -> Array:
-    """Return +1 or -1, the pole that is nearer to axes of shape (3, n)."""
-    return np.where(axis[2] < 0.0, -1.0, 1.0)
 
 
 @lru_cache

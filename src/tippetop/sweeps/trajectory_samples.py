@@ -21,6 +21,7 @@ from tippetop.mechanics.contacts.branches import is_branched
 from tippetop.mechanics.flight.free_motion import gap
 from tippetop.mechanics.motion import along_table, axial_spin
 from tippetop.mechanics.natural_units import Units
+from tippetop.mechanics.quadratures import nearer_pole, turn_at_launch
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.state import State
 from tippetop.mechanics.top import Top
@@ -222,8 +223,9 @@ class SampledLaunch(NamedTuple):
     @classmethod
     def at_launch(cls, samples: TrajectorySamples, launch: int, axis: Vector) -> "SampledLaunch":
         """Return a launch from its start on, where its axis is this one."""
-        pole = 1.0 if axis[2] >= 0.0 else -1.0
-        sums = RunSums.at_launch(pole * float(samples.azimuths[launch]), 0.0)
+        pole = float(nearer_pole(axis[2]))
+        turn = turn_at_launch(float(samples.azimuths[launch]), pole)
+        sums = RunSums.at_launch(turn, 0.0)
         return cls(samples, launch, sums, pole)
 
     def take(self, samples: Samples, top: Top) -> None:
