@@ -4,7 +4,7 @@ Lanes carry them as numbers after those of the state, in steps of sliding and of
 rates are those of a single run (`tippetop.results.sums`).
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -114,9 +114,8 @@ NO_SUMS = LaneSums()
 @lru_cache
 def swept_motion(kind: Kind, sums: LaneSums) -> Motion:
     """Return the equations of motion of sliding tops of a kind, with the rates of sums."""
-    motion = sliding_motion(kind, guarded=True)
 
-    def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
+    def values_of(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> dict[str, Scalar]:
         top, sliding = kind.top(tuple(numbers)), SlidingState.unpack(y)
         touch = sliding_contact(*sliding, top)
         state = on_table(sliding, top)
@@ -127,22 +126,35 @@ def swept_motion(kind: Kind, sums: LaneSums) -> Motion:
             drilling, rolling = resistance_powers(state, touch.traction.torque, top)
             values["drilling"] = touch.normal_force * drilling
             values["rolling"] = touch.normal_force * rolling
-        return (*motion.rates(y, numbers), *sums.rates(values))
+        return values
 
-    return replace(motion, rates=rates, size=motion.size + sums.count) if sums.count else motion
+    return with_sums(sliding_motion(kind, guarded=True), sums, values_of)
 
 
 @lru_cache
 def flying_motion(kind: Kind, sums: LaneSums) -> Motion:
     """Return the equations of motion of flying tops of a kind, with the rates of sums."""
-    motion = flight_motion(kind)
+
+    def values_of(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> dict[str, Scalar]:
+        top, pole = kind.top(tuple(numbers)), sums.pole(y[SIZE:])
+        return moving_rates(sums, State.unpack(y), top, pole)
+
+    return with_sums(flight_motion(kind), sums, values_of)
+
+
+def with_sums(
+    motion: Motion,
+    sums: LaneSums,
+    values_of: Callable[[Sequence[Scalar], Sequence[Scalar]], Mapping[str, Scalar]],
+) -> Motion:
+    """Return a motion that carries sums after its own numbers; `values_of` has their rates."""
+    if not sums.count:
+        return motion
 
     def rates(y: Sequence[Scalar], numbers: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        top, pole = kind.top(tuple(numbers)), sums.pole(y[SIZE:])
-        values = moving_rates(sums, State.unpack(y), top, pole)
-        return (*motion.rates(y, numbers), *sums.rates(values))
+        return (*motion.rates(y, numbers), *sums.rates(values_of(y, numbers)))
 
-    return replace(motion, rates=rates, size=motion.size + sums.count) if sums.count else motion
+    return replace(motion, rates=rates, size=motion.size + sums.count)
 
 
 def moving_rates(sums: LaneSums, state: State, top: Top, pole: Scalar) -> dict[str, Scalar]:
