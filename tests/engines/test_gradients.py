@@ -9,6 +9,8 @@ import pytest
 from tippetop.engines import gradients
 from tippetop.engines.adapters import adapter
 from tippetop.engines.comparison import STEPS
+from tippetop.engines.gradients.base import PART, by_runs, exact_gradient
+from tippetop.engines.gradients.mujoco import MuJoCoLaunch
 from tippetop.engines.measurements import Measurements
 from tippetop.engines.reference import case_of, judged_state
 from tippetop.run import simulate
@@ -25,7 +27,7 @@ def test_the_exact_derivative_is_that_of_exact_runs(parameter):
         run = simulate(problem, until, samples=2)
         ends.append(judged_state(case, run["axis"].values[-1], run["angular_velocity"].values[-1]))
     differed = (ends[0] - ends[1]) / (2.0 * part * value)
-    exact = gradients.exact_gradient(case, parameter)
+    exact = exact_gradient(case, parameter)
     assert exact == pytest.approx(differed, rel=1e-6, abs=1e-6 * np.abs(exact).max())
 
 
@@ -102,8 +104,8 @@ def test_steps_carry_a_change_as_runs_do_in_mujoco():
     pytest.importorskip("mujoco", reason="MuJoCo is not installed")
     case, made = case_of("peg"), adapter("mujoco")
     (stiff,) = (one for one in made.settings if one.name == "stiff")
-    launch = gradients.MuJoCoLaunch(case, 2e-3, stiff)
-    differed = gradients._by_runs("mujoco", case, 2e-3, stiff, gradients.PART, "launch.spin")
+    launch = MuJoCoLaunch(case, 2e-3, stiff)
+    differed = by_runs("mujoco", case, 2e-3, stiff, PART, "launch.spin")
     carried = launch.carried(launch.change("launch.spin"), 1e-8)
     assert carried == pytest.approx(differed, abs=1e-3 * np.abs(differed).max())
 
