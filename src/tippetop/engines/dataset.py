@@ -13,6 +13,14 @@ from numpy.typing import NDArray
 import tippetop as tt
 from tippetop.contact.mode import EventKind
 from tippetop.engines.families import FAMILIES, SHARES, drawn_problem
+from tippetop.fit.end_slopes import end_slopes
+from tippetop.fit.linearized_run import LinearizedRun
+from tippetop.fit.problem_numbers import Direction
+from tippetop.mechanics.motion import angular_velocity
+from tippetop.mechanics.natural_units import Units
+from tippetop.mechanics.state import State
+from tippetop.mechanics.top import Top
+from tippetop.mechanics.vectors import scale
 from tippetop.support.errors import FileTrouble, InvalidInput, Unavailable, is_number, is_whole
 from tippetop.support.files import (
     in_words,
@@ -313,17 +321,28 @@ def _events(run: Any) -> Iterator[tuple[float, int, int]]:
 
 def _derivatives(seed: int, number: int, times: Array) -> Array:
     """Return the derivatives of the last state of a problem by its fields."""
-    drawn = drawn_problem(seed, number)
-    slopes = tt.sensitivities(
-        drawn.problem, float(times[-1]), list(drawn.fields), times=[0.0, float(times[-1])]
-    )
+    drawn, end = drawn_problem(seed, number), float(times[-1])
+    directions = [Direction.of(drawn.problem, name) for name in drawn.fields]
+    run = LinearizedRun(drawn.problem, end, np.array([0.0, end]), directions)
     table = np.full((len(FIELDS), len(NUMBERS)), np.nan)
-    if slopes.sizes["time"] == 2:
-        columns = [slopes[name].values[:, -1].reshape(len(drawn.fields), -1) for name in STATES]
-        values = np.concatenate(columns, axis=1)
-        for row, name in enumerate(drawn.fields):
-            table[FIELDS.index(name)] = values[row]
+    for direction, name in enumerate(drawn.fields):
+        slopes = end_slopes(run, direction, _numbers_of)
+        if slopes is not None:
+            table[FIELDS.index(name)] = slopes
     return table
+
+
+def _numbers_of(state: State, top: Top, units: Units) -> Array:
+    """Return the numbers of a state in natural units, in SI and in the order of `NUMBERS`."""
+    omega = angular_velocity(state.axis, state.momentum, top)
+    return np.array(
+        [
+            *state.axis,
+            *scale(1.0 / units.time, omega),
+            *scale(units.speed, state.velocity),
+            units.length * state.height,
+        ]
+    )
 
 
 def _card(count: int, seed: int, times: Array) -> str:

@@ -43,7 +43,7 @@ from tippetop.integrators.base import Array, Guard
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Kind, contact_numbers, contacts_with
+from tippetop.mechanics.top import Kind, Top, contact_numbers, contacts_with
 from tippetop.problem.problem import Problem, top_of
 from tippetop.results.catalogue import SAMPLED
 from tippetop.results.observables import Recorder
@@ -667,6 +667,23 @@ class LinearizedRun:
         transitions = [self.launch, *(v.transition for v in self.visits if v.transition)]
         states = [one.state for one in transitions for _ in one.events]
         return RunReading(run, states, start.units)
+
+    def end_beside(self, direction: int, change: float) -> tuple[State, Top, Units]:
+        """Return the last state of a run beside the run, to first order in a change, with its top
+        and units.
+
+        Raises
+        ------
+        Differs
+            If what follows the last integrated leg is another.
+        """
+        numbers, last = self._beside(direction, change, at_launch=True), self.legs[-1]
+        top, units = numbers.top_of(self.kind), numbers.natural_units
+        if isinstance(last, Junction):
+            end = self._end_of(numbers)
+            return self.beside(last, direction, change, end).state, top, units
+        mode = self._mode(last.visit.mode, self.directions[direction], change)
+        return mode.state((last.last + change * last.changes[direction]).tolist()), top, units
 
     def _launch(self, numbers: StartNumbers, first: Transition) -> NaturalLaunch:
         """Return the launch of the run, or of one beside it."""
