@@ -17,7 +17,7 @@ from tippetop.integrators.base import TOLERANCES, Arc, Array, Integrator, Motion
 from tippetop.integrators.rates import RightHandSide
 from tippetop.mechanics.vectors import Scalar
 
-PATIENCE = 4096
+PATIENCE = 2048
 """Steps of an explicit method after which it is looked whether the motion is stiff."""
 
 STIFF = 3.0

@@ -23,7 +23,7 @@ from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.vectors import Scalar
 
-LONG = 4096
+LONG = 2048
 """Steps in an arc at most."""
 
 PROBES_PER_STEP = 12
