@@ -71,6 +71,18 @@ def test_slip_and_spin_end_together_at_the_known_ratio(inner: float) -> None:
         assert float(speed / drilled) == pytest.approx(KNOWN_RATIOS[inner], abs=1e-4)
 
 
+@pytest.mark.parametrize("inner", [0.0, 0.5])
+def test_a_face_slides_on_from_where_rounding_decides_what_prevails(inner: float) -> None:
+    """Where a point of an edge rests, v = a w, its law goes over from one form to another; steps
+    become short there, and one may end on the very number.
+    """
+    pressure, radius = ("uniform", inner * RADIUS) if inner else ("rim", RADIUS)
+    for place in range(40, 80):
+        spin = 0.3 / radius * (1.0 + place * 2.0**-53)
+        problem = launched(0.3, spin, puck(inner), contact=tt.Contact(face_pressure=pressure))
+        assert tt.simulate(problem, 0.01, samples=2).attrs["status"] == "completed", place
+
+
 def test_a_rim_stops_where_its_rear_point_rests() -> None:
     """Of a ring whose mass is its rim v = a w: the instantaneous centre is on it."""
     problem = launched(0.5, 30.0, puck(0.9, 0.95), contact=tt.Contact(face_pressure="rim"))

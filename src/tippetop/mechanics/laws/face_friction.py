@@ -23,9 +23,9 @@ from typing import Any, NamedTuple, Protocol
 
 from tippetop.mechanics.laws.contensou import PI, EllipsoidalLaw
 from tippetop.mechanics.laws.contensou_hertz import HertzLaw
-from tippetop.mechanics.laws.coulomb import TINY, CoulombLaw, StaticCoulombLaw
+from tippetop.mechanics.laws.coulomb import CoulombLaw, StaticCoulombLaw
 from tippetop.mechanics.laws.friction import FrictionLaw, ViscousLaw
-from tippetop.mechanics.vectors import Horizontal, Scalar
+from tippetop.mechanics.vectors import Horizontal, Scalar, either, exceeds
 
 MEANS = 7
 """Arithmetic-geometric means after the first: as many as 1 - k^2 >= `LEAST_COMPLEMENT` needs."""
@@ -135,7 +135,7 @@ def uniform_shares(square: Scalar, drilling: Scalar, radius: Scalar) -> DiskShar
     inside = (4.0 - 2.0 * k2) * second - (1.0 - k2)
     beyond = 1.0 + 2.0 * sigma * (1.0 - 2.0 * k2)
     factor = first * larger**-0.5
-    torque = drills * inside + (1.0 - drills) * beyond
+    torque = either(drills, inside, beyond)
     return DiskShares(
         4.0 / (3.0 * PI) * (factor * both),
         4.0 / (9.0 * PI) * (radius * radius) * (factor * torque),
@@ -150,18 +150,21 @@ def rim_shares(square: Scalar, drilling: Scalar, radius: Scalar) -> DiskShares:
     below = 0.5 - k2 * sigma  # B / K
     factor = 2.0 / PI * (first * larger**-0.5)
     return DiskShares(
-        factor * (drills * below + (1.0 - drills) * second),
-        (radius * radius) * factor * (drills * second + (1.0 - drills) * below),
+        factor * either(drills, below, second),
+        (radius * radius) * factor * either(drills, second, below),
     )
 
 
 def _prevailing(square: Scalar, drilling: Scalar, radius: Scalar) -> tuple[Scalar, Scalar, Scalar]:
-    """Return the larger of v^2 and (a w)^2, the smaller over it, and whether drilling prevails."""
+    """Return the larger of v^2 and (a w)^2, the smaller over it, and whether drilling prevails.
+
+    Steps become ever shorter towards v = a |w|, so that one may end where rounding tells no
+    difference: a quotient in place of the choice would have no derivatives there.
+    """
     drilled = (radius * drilling) * (radius * drilling)
-    excess = drilled - (1.0 + PREVALENCE) * square
-    drills = 0.5 + 0.5 * (excess / (abs(excess) + TINY))
-    larger = drills * drilled + (1.0 - drills) * square
-    return larger, (drills * square + (1.0 - drills) * drilled) / larger, drills
+    drills = exceeds(drilled, (1.0 + PREVALENCE) * square)
+    larger = either(drills, drilled, square)
+    return larger, either(drills, square, drilled) / larger, drills
 
 
 def _against(shares: DiskShares, mu: Scalar, slip: Horizontal, drilling: Scalar) -> FaceTraction:
