@@ -9,7 +9,7 @@ from campaigns import seeds
 from tippetop.fit.dual import Dual, duals, parts_of
 from tippetop.fit.linearized_run import LinearizedRun
 from tippetop.fit.problem_numbers import Direction
-from tippetop.fit.sensitivities import _differences
+from tippetop.fit.sensitivities import _differences, slopes_of
 from tippetop.fit.variational import followed
 from tippetop.graph.derivatives import derivatives
 from tippetop.graph.recording import record
@@ -280,6 +280,23 @@ def richardson(problem, times, field, kinds):
     return found
 
 
+def rounding_of_runs(problem, times, field):
+    """Return what rounding makes of the variables of runs: second differences of runs whose field
+    differs by 1e-11, which are 1e-22 without it.
+    """
+    value = float(problem.get(field))
+    runs = [
+        tt.simulate(problem.replace({field: value * (1.0 + k * 1e-11)}), times[-1], times=times)
+        for k in range(5)
+    ]
+    found = dict.fromkeys(NAMES, 0.0)
+    for name in NAMES:
+        if len({run[name].shape for run in runs}) == 1:
+            values = np.array([run[name].values for run in runs])
+            found[name] = float(np.abs(np.diff(values, 2, axis=0)).max(initial=0.0))
+    return found
+
+
 ENDS_ON_TWO = (55, 80, 534)
 """Seeds in which slip ends on two contacts, with a direction of which few digits are known."""
 
@@ -306,6 +323,10 @@ def test_random_problems_agree_with_differences(seed):
     round in an impact or ends often, some differ more (25, 113, 122 and 250), and where Euler's
     angles are read near a pole (69); where slip is about to end for long, or runs nearby go through
     other events, there is none (187, 200; 251, 279).
+
+    Derivatives are read off two runs, `apart` to either side, as near as the fastest motion asks. What
+    rounding makes of a variable, over that, is not known of its derivative: slip at a small patch
+    changes the force within so little that it is 1e-7 of it.
     """
     case = random_case(seed)
     if case is None:
@@ -313,16 +334,18 @@ def test_random_problems_agree_with_differences(seed):
     problem, duration, field = case
     times = np.linspace(0.0, duration, 41)
     kinds = tt.simulate(problem, duration, times=times)["event_kind"].values.tolist()
-    slopes = tt.sensitivities(problem, duration, [field], times=times)
+    run = LinearizedRun(problem, duration, times, [Direction.of(problem, field)])
+    slopes, reason = slopes_of(run, 0)
     beside = richardson(problem, times, field, kinds)
     if beside is None:
         return
-    assert slopes["reason"].values[0] == ""
+    assert reason == ""
+    rounding, apart = rounding_of_runs(problem, times, field), run.reach(0) * run.fields[0].scale
     for name, (expected, error) in beside.items():
-        found = slope(slopes, name, field)
+        found = slopes[name]
         largest = max(np.max(np.abs(expected), initial=0.0), 1e-300)
         off = np.max(np.abs(found - expected), initial=0.0)
-        assert off <= 10.0 * error + 1e-7 * largest, (
+        assert off <= 10.0 * error + rounding[name] / apart + 1e-7 * largest, (
             name,
             off / largest,
             error / largest,
