@@ -324,9 +324,9 @@ def test_random_problems_agree_with_differences(seed):
     angles are read near a pole (69); where slip is about to end for long, or runs nearby go through
     other events, there is none (187, 200; 251, 279).
 
-    Derivatives are read off two runs, `apart` to either side, as near as the fastest motion asks. What
-    rounding makes of a variable, over that, is not known of its derivative: slip at a small patch
-    changes the force within so little that it is 1e-7 of it.
+    Derivatives are read off two runs, `apart` to either side, as near as the fastest motion asks.
+    What rounding makes of a variable, over that, is not known of its derivative: slip at a small
+    patch changes the force within so little that it is 1e-7 of it.
     """
     case = random_case(seed)
     if case is None:

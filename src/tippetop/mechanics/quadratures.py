@@ -39,11 +39,11 @@ def turn_at_launch(azimuth: Scalar, pole: Scalar) -> Scalar:
     return pole * azimuth
 
 
-def turn_in_chart(turn: Scalar, azimuth: Scalar, pole: Scalar, other: Scalar) -> Scalar:
-    """Return psi in the chart of another pole, rad, from that in the chart of `pole`, for the
+def turn_in_chart(turn: Scalar, azimuth: Scalar, pole: Scalar, opposite: Scalar) -> Scalar:
+    """Return psi in the chart of the opposite pole, rad, from that in the chart of `pole`, for the
     axis's azimuth.
     """
-    return turn + (other - pole) * azimuth
+    return turn + (opposite - pole) * azimuth
 
 
 def turn_rate(axis: Vector, momentum: Vector, pole: Scalar, top: Top) -> Scalar:

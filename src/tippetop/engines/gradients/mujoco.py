@@ -82,8 +82,8 @@ def gradients(case: Case, step: float) -> Gradients:
     for setting in made.settings:
         if made.refusal(case, setting):
             continue
-        whole = functools.partial(by_runs, "mujoco", case, step, setting, PART)
-        yield "differences of runs", setting.name, whole
+        differences = functools.partial(by_runs, "mujoco", case, step, setting, PART)
+        yield "differences of runs", setting.name, differences
         if setting.options.get("integrator") == "RK4":
             continue  # mjd_transitionFD refuses it.
         for perturbation in PERTURBATIONS:

@@ -26,8 +26,10 @@ def gradients(case: Case, step: float) -> Gradients:
     """
     made = adapter("newton")
     for setting in settings_of(made, case):
-        whole = functools.partial(by_runs, "newton", case, step, setting, PART_IN_SINGLE_PRECISION)
-        yield "differences of runs", setting.name, whole
+        differences = functools.partial(
+            by_runs, "newton", case, step, setting, PART_IN_SINGLE_PRECISION
+        )
+        yield "differences of runs", setting.name, differences
         if setting.options["solver"] == "SemiImplicit":
             yield "reverse mode of Warp", setting.name, NewtonTape(case, step, setting).carried
 
