@@ -24,6 +24,11 @@ ROUNDS = 20
 ITERATIONS = 50
 """Iterations in each."""
 
+SLOW = 0.01
+"""Turn of directions in an iteration, rad, from which on Newton's method is tried in a round before
+its iterations are over: the directions are near then, and each further iteration brings little.
+"""
+
 NEWTON_STEPS = 12
 """Steps of Newton's method that try to end a round."""
 
@@ -80,16 +85,22 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
     """
     ways = [_unit(direction) for direction in start]
     for turn in range(ROUNDS):
+        is_tried = False
         for step in range(ITERATIONS):
             before, responses = ways, response(ways)
             ways = [
                 _unit(plus(scaled(resisted.strength + size(resisted.rate), e), resisted.rate))
                 for resisted, e in zip(responses, ways, strict=True)
             ]
-            if _apart(ways, before) < EXACT:
+            moved = _apart(ways, before)
+            if moved < EXACT:
                 if turn + step == 0 and _leads(responses, before):
                     return before
                 break
+            if moved < SLOW and not is_tried:
+                is_tried, improved = True, _improved(response, ways)
+                if improved is not None:
+                    return improved
         improved = _improved(response, ways)
         if improved is None:
             improved = _improved(response, _descended(response, ways))
