@@ -32,6 +32,11 @@ SAME = 1e-5
 rounding of single precision.
 """
 
+ALIKE = 1e-6
+"""Angle, rad, between axes that are not compared with one another, and their distance, in sizes of
+the body: a tenth of `SAME`, so that neither is rounder by more than rounding.
+"""
+
 HALF_PLANES = 5
 """Number of half-planes whose sections are compared with all vertices."""
 
@@ -171,7 +176,11 @@ def _directions(mesh: Any, axis: str | None) -> list[Vectors]:
     if axis is not None:
         return [unit["xyz".index(axis)]]
     principal = np.linalg.eigh(mesh.moment_inertia)[1].T
-    upwards = [vector * np.sign(vector[np.abs(vector).argmax()]) for vector in principal]
+    upwards = [
+        vector * np.sign(vector[np.abs(vector).argmax()])
+        for vector in principal
+        if np.sort(np.abs(vector))[1] > ALIKE  # no coordinate axis
+    ]
     return [unit[2], unit[1], unit[0], *upwards]
 
 
@@ -179,8 +188,8 @@ def _origins(mesh: Any, direction: Vectors, size: float) -> list[Vectors]:
     """Return possible points of the axis: the origin if it is near, and the centre of mass."""
     center = np.asarray(mesh.center_mass)
     from_axis = center - (center @ direction) * direction
-    near = np.linalg.norm(from_axis) <= NOT_ROUND * size
-    return [np.zeros(3), from_axis] if near else [from_axis]
+    offset = np.linalg.norm(from_axis) / size
+    return [np.zeros(3)] * bool(offset <= NOT_ROUND) + [from_axis] * bool(offset > ALIKE)
 
 
 class _Surface:
