@@ -1,8 +1,9 @@
 """How hypothesis behaves in every test, what stands in for what is not built, and what must not be
 left running.
 
-Hypothesis searches with fixed seeds, so that a check fails for a change and for nothing else.
-`--hypothesis-profile=search`, which `make campaigns` asks for, searches at random and for longer.
+Hypothesis searches with fixed seeds, so that a check fails for a change and for nothing else;
+`make test-all` tries more examples than `make test`. `--hypothesis-profile=search`, which `make
+campaigns` asks for, searches at random and for longer.
 """
 
 import gc
@@ -16,7 +17,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from browsing import browser, visit
-from campaigns import note_marks
+from campaigns import examples, note_marks
 from children import RUN, end_leftovers, signals_heard
 from tippetop.export import bundle
 from tippetop.page_engine import HERE
@@ -34,9 +35,12 @@ settings.load_profile("fixed")
 
 def pytest_configure(config: pytest.Config) -> None:
     """Generate the page's engine if a source is newer; pytest's workers need not. Before, note
-    which parameters need not be made.
+    which parameters need not be made, and how many examples hypothesis tries.
     """
     note_marks(config.option.markexpr)
+    if settings().derandomize:
+        settings.register_profile("fixed", settings(), max_examples=examples(25, claim=2000))
+        settings.load_profile("fixed")
     if hasattr(config, "workerinput"):
         return
     os.environ[RUN] = uuid.uuid4().hex  # all that is started from here on inherits it
