@@ -11,8 +11,10 @@ import pytest
 from tippetop.cli.commands import run
 
 
-def misused(folder: Path | str, *arguments: str) -> str:
-    """Return what the command says in a folder, all of it to standard error, with exit code 2."""
+def commanded(folder: Path | str, *arguments: str) -> tuple[str, str, int]:
+    """Return what the command prints in a folder and what it says to standard error, and its exit
+    code; it runs in this process.
+    """
     out, said = io.StringIO(), io.StringIO()
     with (
         contextlib.chdir(folder),
@@ -22,5 +24,11 @@ def misused(folder: Path | str, *arguments: str) -> str:
         pytest.raises(SystemExit) as ending,
     ):
         run()
-    assert (out.getvalue(), ending.value.code) == ("", 2), said.getvalue()
-    return said.getvalue()
+    return out.getvalue(), said.getvalue(), ending.value.code
+
+
+def misused(folder: Path | str, *arguments: str) -> str:
+    """Return what the command says in a folder, all of it to standard error, with exit code 2."""
+    out, said, code = commanded(folder, *arguments)
+    assert (out, code) == ("", 2), said
+    return said

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 import tippetop as tt
+from independent_solver import cross
 from tippetop.extend import Horizontal, Scalar, Vector, exp, friction_law, log, sqrt, tanh
 
 DURATION = 0.4
@@ -76,18 +77,18 @@ def by_scipy(problem: tt.Problem, law) -> NDArray[np.float64]:
 
     def rates(time: float, y: NDArray[np.float64]) -> NDArray[np.float64]:
         axis, momentum, velocity = y[:3], y[3:6], np.array([*y[6:], 0.0])
-        turning = np.cross(momentum, axis) / body.I1
+        turning = cross(momentum, axis) / body.I1
         omega = momentum / body.I1 + (1.0 / body.I3 - 1.0 / body.I1) * (momentum @ axis) * axis
         arm = centre * axis - body.shape.radius * up
         velocity[2] = -centre * turning[2]
-        slip = (velocity + np.cross(omega, arm))[:2]
+        slip = (velocity + cross(omega, arm))[:2]
         force = np.array([*law(slip), 1.0])
         # The height of the centre of mass, radius - centre c, has the acceleration N / m - g.
-        of_force = np.cross(np.cross(arm, force), axis)[2]
-        of_motion = np.cross(momentum, turning)[2]
+        of_force = cross(cross(arm, force), axis)[2]
+        of_motion = cross(momentum, turning)[2]
         factor = centre / body.I1
         normal = (problem.gravity - factor * of_motion) / (1.0 / body.mass + factor * of_force)
-        moment = normal * np.cross(arm, force)
+        moment = normal * cross(arm, force)
         return np.concatenate([turning, moment, normal * force[:2] / body.mass])
 
     start = tt.simulate(problem, duration=1e-6, samples=2).isel(time=0)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from independent_solver import cross
 from tippetop.contact.automaton import Automaton, opens_by_zero
 from tippetop.contact.closed_pair import Before
 from tippetop.contact.contact_mode import ContactMode, sliding_on_two
@@ -66,7 +67,7 @@ def acceleration(state: State, top: Top, force: np.ndarray, at: np.ndarray) -> n
     """
     n, L = np.array(state.axis), np.array(state.momentum)
     pull = force[2] / top.mass - top.gravity
-    turned = np.cross(np.cross(at, force), n) + np.cross(L, np.cross(L, n)) / top.transverse_inertia
+    turned = cross(cross(at, force), n) + cross(L, cross(L, n)) / top.transverse_inertia
     return np.array(
         [
             pull + one.surface.slope(0.0) * -turned[2] / top.transverse_inertia
@@ -85,7 +86,7 @@ def delassus(tops: Tops, state: State) -> np.ndarray:
     for one in tops:
         slope, height = one.surface.slope(n[2]), one.surface.height(n[2])
         arm = -slope * (n - np.array([0.0, 0.0, n[2]])) - np.array([0.0, 0.0, height])
-        slip = (np.array(state.velocity) + np.cross(omega, arm))[:2]
+        slip = (np.array(state.velocity) + cross(omega, arm))[:2]
         force = np.array([*(-top.friction.mu * slip / np.hypot(*slip)), 1.0])
         columns.append(acceleration(state, top, force, arm) - free)
     return np.array(columns).T

@@ -50,7 +50,12 @@ def test_a_program_in_python_is_compared_by_the_files_alone(folder, tmp_path, fa
     program = tmp_path / "mine.py"
     program.write_text(SIMULATE.replace("FACTOR", factor))
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_suite.py"]
-    environment = {**os.environ, "SIMULATE": str(program), "TOLERANCE": "1e-6"}
+    environment = {
+        **os.environ,
+        "SIMULATE": str(program),
+        "TOLERANCE": "1e-6",
+        "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
+    }
     done = subprocess.run(
         command, cwd=folder, env=environment, capture_output=True, text=True, check=False
     )

@@ -12,7 +12,7 @@ from tippetop.fit.standing import CLOSE, least_passing
 
 CREEP = tt.ContensouFriction(mu=0.3, patch_radius=5e-4)
 
-BALL = tt.design_bowl(radius=0.015, density=1240.0, eccentricity=0.15, inertia_ratio=1.2)
+WOODEN = tt.Workpiece(profile=tt.presets.WOODEN.profile, density=1240.0)
 
 
 def volume(profile):
@@ -185,10 +185,10 @@ def test_what_cannot_be_improved_is_refused(arguments, sentence):
 @pytest.mark.parametrize(
     ("body", "stated", "density"),
     [
-        (BALL, None, 1240.0),
-        (BALL, 800.0, 800.0),
-        (tt.Body.turned(BALL), None, 700.0),
-        (tt.Body.turned(BALL), "brass", 8500.0),
+        (WOODEN, None, 1240.0),
+        (WOODEN, 800.0, 800.0),
+        (tt.Body.turned(WOODEN), None, 700.0),
+        (tt.Body.turned(WOODEN), "brass", 8500.0),
     ],
 )
 def test_the_material_is_the_stated_one_or_that_of_the_workpiece(

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 import tippetop as tt
 from tippetop.cli.commands import app
 
-PIECE = tt.design_bowl(radius=0.015, density=720.0, eccentricity=0.15, inertia_ratio=1.2)
+PIECE = tt.Workpiece(profile=[(0.0, -0.015), (0.0, 0.015, 0.015)], density=720.0)
 SIZES = {"radius": 0.015, "wall": 1e-3, "stem": 1.5e-3, "tip": 0.02}
 BETTER = tt.ImprovedTop(tt.Body.turned(PIECE), PIECE, "lowest spin", 150.0, float("inf"), SIZES)
 

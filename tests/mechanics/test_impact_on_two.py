@@ -9,6 +9,7 @@ import pytest
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
+from independent_solver import cross
 from strategies import numbers
 from tippetop.contact import impact as contact_impact
 from tippetop.contact.impact import impact
@@ -183,15 +184,15 @@ def naive(state, tops, steps):
     arms = [np.array(contact_vector(state.axis, one.surface)) for one in tops]
 
     def normal(y, arm):
-        return (y[3:] + np.cross(inverse @ y[:3], arm))[2]
+        return (y[3:] + cross(inverse @ y[:3], arm))[2]
 
     def units(y):
         """What a unit of either normal impulse changes, with the friction that it causes."""
         omega = inverse @ y[:3]
         for arm in arms:
-            slip = y[3:] + np.cross(omega, arm)
+            slip = y[3:] + cross(omega, arm)
             force = np.array([*top.friction.traction(tuple(slip[:2]), tuple(omega)).force, 1.0])
-            yield np.array([*np.cross(arm, force), *(force / top.mass)])
+            yield np.array([*cross(arm, force), *(force / top.mass)])
 
     def rates(y, closed):
         one, other = units(y)
