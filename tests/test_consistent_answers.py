@@ -188,7 +188,7 @@ def check(case: Case, answer: Answer) -> None:
         assert np.linalg.norm(holding) <= case.eps * normal.sum() + light
 
 
-@pytest.mark.parametrize("seed", seeds(0, 24, 500, always=(1, 5, 8), sampled=(43, 45, 95)))
+@pytest.mark.parametrize("seed", seeds(0, 24, 500, always=(1, 5), sampled=(8, 43, 45, 95)))
 def test_every_consistent_answer_is_reported(seed: int) -> None:
     case = drawn(seed)
     told = reported(case)

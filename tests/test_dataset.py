@@ -108,7 +108,7 @@ def same(read, written):
 # -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name_type", [Path, str])
+@pytest.mark.parametrize("name_type", [Path, pytest.param(str, marks=pytest.mark.slow)])
 def test_what_is_read_is_what_was_written(name_type, request, tmp_path):
     run = request.getfixturevalue("vertical" if name_type is str else "completed")
     path = tt.write_run(run, name_type(tmp_path / "run.nc"))
@@ -123,7 +123,7 @@ def test_problem_that_is_read_runs_as_the_one_written(lifted_off, path):
     assert same(again, lifted_off)
 
 
-@pytest.mark.parametrize("count", [0, 3])
+@pytest.mark.parametrize("count", [pytest.param(0, marks=pytest.mark.slow), 3])
 def test_every_number_and_every_sentence_survives_a_file(completed, tmp_path, count):
     """Also what is infinite, not a number, negative zero or too small for full precision."""
     special = [math.inf, -math.inf, math.nan, -0.0, 5e-324, -2.5e-310, 1e308, 0.1]
@@ -192,8 +192,10 @@ class PowerCut(BaseException):
     ("error", "raised", "overwriting"),
     [
         (OSError(28, "No space left on device"), tt.FileTrouble, False),
-        (OSError(28, "No space left on device"), tt.FileTrouble, True),
-        (ValueError("cannot be encoded"), ValueError, False),
+        pytest.param(
+            OSError(28, "No space left on device"), tt.FileTrouble, True, marks=pytest.mark.slow
+        ),
+        pytest.param(ValueError("cannot be encoded"), ValueError, False, marks=pytest.mark.slow),
         (KeyboardInterrupt(), KeyboardInterrupt, True),
         (PowerCut(), PowerCut, False),
     ],

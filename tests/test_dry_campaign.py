@@ -67,7 +67,7 @@ def ordinary(law: dict[str, Any], random: np.random.Generator) -> tt.Problem:
 
 
 @pytest.mark.parametrize("law", RESISTED)
-@pytest.mark.parametrize("seeds", seed_ranges(check=8, sample=24, claim=150, size=63))
+@pytest.mark.parametrize("seeds", seed_ranges(check=4, sample=24, claim=150, size=63))
 def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_couple(
     law: str, seeds: range
 ) -> None:
@@ -107,7 +107,7 @@ def test_tops_that_are_resisted_keep_energy_with_all_losses_and_the_cone_of_the_
 
 
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("seeds", seed_ranges(check=8, sample=32, claim=300, size=67))
+@pytest.mark.parametrize("seeds", seed_ranges(check=4, sample=32, claim=300, size=67))
 def test_dry_tops_keep_energy_the_limit_of_friction_and_jelletts_integral(
     law: str, seeds: range
 ) -> None:

@@ -206,7 +206,9 @@ def test_a_body_slides_down_a_steep_slope_with_little_friction() -> None:
     assert float(run["x"][-1]) == pytest.approx(acceleration / 8, rel=1e-9)
 
 
-@pytest.mark.parametrize(("rate", "azimuth"), [(2.0, 0.4), (-3.5, 0.4)])
+@pytest.mark.parametrize(
+    ("rate", "azimuth"), [pytest.param(2.0, 0.4, marks=pytest.mark.slow), (-3.5, 0.4)]
+)
 def test_a_body_launched_flat_with_a_rate_of_tilt_rocks(rate: float, azimuth: float) -> None:
     """Its rim stays on the table: it rises, turns round and lands, or falls over."""
     problem = launched(0.0, 0.0, TALL, friction=tt.CoulombFriction(mu=2.0)).replace(
@@ -407,7 +409,7 @@ def test_a_body_whose_rim_friction_jams_is_struck_and_turns_about_it(mu: float) 
     assert float(run["energy_error"]) < 1e-12
 
 
-@pytest.mark.parametrize("below", [1e-4, 1e-6])
+@pytest.mark.parametrize("below", [pytest.param(1e-4, marks=pytest.mark.slow), 1e-6])
 def test_a_rim_that_friction_nearly_jams_turns_as_one_that_is_struck(below: float) -> None:
     """Below mu = (I1/(m a1) + a1)/h the normal force is as large as 1 / below: slip ends in so
     short a time that the weight does nothing meanwhile.

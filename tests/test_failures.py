@@ -91,7 +91,14 @@ def test_a_flight_that_turns_too_often_is_followed_on_no_page_either(spin: float
 
 
 @pytest.mark.parametrize(
-    ("step", "tilt"), [(2e-3, 0.5), (2e-3, 1.2), (4e-3, 0.1), (1e-2, 0.5), (3e-2, 1.2)]
+    ("step", "tilt"),
+    [
+        pytest.param(2e-3, 0.5, marks=pytest.mark.slow),
+        pytest.param(2e-3, 1.2, marks=pytest.mark.slow),
+        (4e-3, 0.1),
+        (1e-2, 0.5),
+        (3e-2, 1.2),
+    ],
 )
 def test_steps_too_long_for_an_edge_are_told_whatever_they_lead_to(
     step: float, tilt: float

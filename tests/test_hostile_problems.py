@@ -160,7 +160,12 @@ def test_hostile_problems_that_were_hard(seed: int, outcomes: set[str]) -> None:
     ("seed", "outcome"),
     [
         pytest.param(66, "completed", id="a small patch that is struck"),
-        pytest.param(324, "completed", id="little slip of a body of much inertia"),
+        pytest.param(
+            324,
+            "completed",
+            id="little slip of a body of much inertia",
+            marks=pytest.mark.slow,
+        ),
         pytest.param(
             6711, "completed", id="Coulomb's friction that could hold a million times the weight"
         ),
@@ -174,7 +179,7 @@ def test_one_launch_and_many_tell_the_same_of_their_accuracy(seed: int, outcome:
     assert (ending is tt.Outcome.INACCURATE) == (outcome == "inaccurate")
 
 
-@pytest.mark.parametrize("seed", [1093, 1204])
+@pytest.mark.parametrize("seed", [1093, pytest.param(1204, marks=pytest.mark.slow)])
 def test_launches_followed_together_are_watched(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
     """Steps that care for slip alone let the axis change its length."""
     problem = tt.Problem(**hostile(np.random.default_rng(seed)))

@@ -23,7 +23,7 @@ MAIN = "from tippetop.cli.main import main; print('begun', flush=True); main()"
     ("arguments", "longest"),
     [
         ("simulate --duration 1e5 --integrator rk4 --step 1e-5 --out run.nc --csv run.csv", 3.0),
-        ("reproduce --quick --out report", 5.0),
+        pytest.param("reproduce --quick --out report", 5.0, marks=pytest.mark.slow),
     ],
     ids=["simulate", "reproduce"],
 )

@@ -11,7 +11,7 @@ import tippetop as tt
 SIMULATE = (sys.executable, "-m", "tippetop", "simulate", "--duration", "1")
 
 
-@pytest.mark.parametrize("encoding", ["cp1252", "ascii"])
+@pytest.mark.parametrize("encoding", [pytest.param("cp1252", marks=pytest.mark.slow), "ascii"])
 def test_outputs_that_are_not_utf_8_show_plain_characters(encoding):
     environment = os.environ | {"PYTHONIOENCODING": encoding}
     ended = subprocess.run(SIMULATE, env=environment, capture_output=True, check=False, timeout=120)

@@ -47,7 +47,7 @@ def words(run: xr.Dataset) -> list[str]:
     return run["mode"].values.tolist()
 
 
-@pytest.mark.parametrize("pressure", PRESSURES)
+@pytest.mark.parametrize("pressure", among(PRESSURES, check=1))
 def test_what_slides_without_turning_stops_as_coulombs_friction_stops_it(pressure: str) -> None:
     dumbbell = with_patch(DUMBBELL, pressure)
     along = followed_by_steps(dumbbell.replace({"launch.velocity": (0.2, 0.0, 0.0)}), 1.0)
@@ -271,7 +271,7 @@ def test_what_holds_hertz_s_patch_without_drilling_is_an_expression():
 @pytest.mark.parametrize(
     ("mu", "launch"),
     [
-        (
+        pytest.param(
             1.5506065568155263,
             tt.Launch(
                 tilt=1.2920733759451828,
@@ -280,6 +280,7 @@ def test_what_holds_hertz_s_patch_without_drilling_is_an_expression():
                 tilt_rate=2.67910701178515,
                 slip=(0.2782247755752787, -0.5639138835596632),
             ),
+            marks=pytest.mark.slow,
         ),
         (
             2.3245753197486803,

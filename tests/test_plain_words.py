@@ -54,6 +54,7 @@ def test_constants_with_several_values_in_a_folder_are_found(tool: ModuleType, s
     assert list(tool.clashes(trees)) == ["a: LOOKS is 3 and 4"]
 
 
+@pytest.mark.slow  # of every day it is a part of `make lint`
 def test_the_package_passes() -> None:
     done = subprocess.run([sys.executable, TOOL], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout

@@ -31,7 +31,13 @@ def ball(*others: tt.Shape, **launch: Any) -> tt.Problem:
 
 @pytest.mark.parametrize(
     ("friction", "tilt"),
-    [("coulomb", 0.0), ("coulomb", 1e-8), ("viscous", 0.0), ("viscous", 1e-9), ("viscous", 1e-3)],
+    [
+        ("coulomb", 0.0),
+        pytest.param("coulomb", 1e-8, marks=pytest.mark.slow),
+        ("viscous", 0.0),
+        ("viscous", 1e-9),
+        ("viscous", 1e-3),
+    ],
 )
 def test_a_ring_that_never_touches_changes_nothing(tilt: float, friction: str) -> None:
     changes = {"friction": {"kind": friction, "mu": 0.3}}

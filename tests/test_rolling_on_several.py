@@ -323,7 +323,7 @@ def test_time_stepping_converges_to_our_runs_at_first_order(seed: int, duration:
     assert sizes[0] / sizes[1] == pytest.approx(2.0, rel=0.1)
 
 
-@pytest.mark.parametrize("tolerance", [None, 1e-14, 1e-12])
+@pytest.mark.parametrize("tolerance", [None, pytest.param(1e-14, marks=pytest.mark.slow), 1e-12])
 def test_straight_slip_on_two_ends_when_friction_has_taken_it(tolerance: float | None) -> None:
     """At v / (mu g): a step may lead beyond, as nothing of straight motion tells it to be short."""
     for speed in np.linspace(0.05, 0.4, 6):

@@ -1,12 +1,14 @@
 """Runs on a slope and in air, against closed solutions, balances and another formulation."""
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 
 import tippetop as tt
+from campaigns import among
 from tippetop.export.raycast import view_of
 from tippetop.mechanics.field import STILL
 
@@ -125,8 +127,9 @@ def bodies():
     }
 
 
-@pytest.mark.parametrize("field", [SLOPE, AIR, SLOPE | AIR], ids=["slope", "air", "both"])
-@pytest.mark.parametrize("name", bodies())
+@pytest.mark.parametrize(
+    ("name", "field"), among(list(product(bodies(), (SLOPE, AIR, SLOPE | AIR))), check=8)
+)
 def test_energy_and_work_balance(name, field):
     problem = bodies()[name].replace(field)
     run = tt.simulate(problem, duration=1.5)

@@ -128,7 +128,7 @@ def states(segment, count=5):
         yield y, segment.mode.state(y)
 
 
-@pytest.mark.parametrize("seed", [ONE_THEN_BOTH, SLIPS_AGAIN])
+@pytest.mark.parametrize("seed", [ONE_THEN_BOTH, pytest.param(SLIPS_AGAIN, marks=pytest.mark.slow)])
 def test_sticking_contacts_do_not_slip_and_stay_within_the_friction_cone(seed: int) -> None:
     seen = set()
     for segment in followed(seed):

@@ -199,7 +199,9 @@ def test_axes_of_sweeps_have_units() -> None:
     ("axis", "values"),
     [
         ("launch.spin=0:600rpm:3", [0.0, 10.0 * TURN / 2.0, 10.0 * TURN]),
-        ("launch.spin=300:600 rpm:2", [5.0 * TURN, 10.0 * TURN]),
+        pytest.param(
+            "launch.spin=300:600 rpm:2", [5.0 * TURN, 10.0 * TURN], marks=pytest.mark.slow
+        ),
         ("launch.tilt=0,90,180 deg", [0.0, math.pi / 2.0, math.pi]),
         ("body.mass=10 g,0.02 kg", [0.01, 0.02]),
     ],

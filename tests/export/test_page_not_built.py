@@ -40,7 +40,12 @@ def test_a_run_is_not_written_as_a_page(unbuilt, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "options", [["--no-browser"], ["--host", "127.0.0.1", "--no-browser"], ["--out"]]
+    "options",
+    [
+        ["--no-browser"],
+        pytest.param(["--host", "127.0.0.1", "--no-browser"], marks=pytest.mark.slow),
+        ["--out"],
+    ],
 )
 def test_the_laboratory_does_not_open(unbuilt, tmp_path, options):
     page = tmp_path / "page.html"

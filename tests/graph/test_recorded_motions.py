@@ -27,7 +27,7 @@ from tippetop.mechanics.surfaces.surface import SphereSurface
 from tippetop.mechanics.top import Top
 from tippetop.problem.presets import report_problem
 
-POINTS = 6
+POINTS = 3
 ROUNDING = 5e-13
 """Error that rounding makes, beside the largest number: floats in one order of operations are off
 by up to 8.6e-14 of what 40 digits give (a ring whose rolling is held), in another by as much again.

@@ -259,8 +259,8 @@ def a_folder_that_cannot_be_written(_: Path) -> Path:
     "place",
     [
         a_file_in_its_place,
-        below_a_file,
-        a_folder_that_cannot_be_made,
+        pytest.param(below_a_file, marks=pytest.mark.slow),
+        pytest.param(a_folder_that_cannot_be_made, marks=pytest.mark.slow),
         a_folder_that_cannot_be_written,
     ],
     ids=lambda place: place.__name__,

@@ -41,7 +41,9 @@ def test_a_cavity_or_a_weight_gives_what_is_wanted(piece, density, alpha, gamma)
     assert gap >= wall - 1e-9
 
 
-@pytest.mark.parametrize(("alpha", "gamma"), [(0.1, 1.3), (0.05, 1.7)])
+@pytest.mark.parametrize(
+    ("alpha", "gamma"), [pytest.param(0.1, 1.3, marks=pytest.mark.slow), (0.05, 1.7)]
+)
 def test_a_bowl_and_a_stem_give_what_is_wanted(alpha, gamma):
     found = tt.design_bowl(0.015, 1000.0, alpha, gamma, stem=0.002 if alpha == 0.1 else 0.0015)
     assert proportions(found) == pytest.approx((alpha, gamma), rel=1e-9)

@@ -46,5 +46,5 @@ def work(count: int, waves: int, patch: pytest.MonkeyPatch) -> int:
 def test_points_of_a_wavy_outline_are_looked_at_some_times_each(
     waves: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    count = 2400
+    count = 1200
     assert work(count, waves, monkeypatch) < 250 * count, "and not all for each"

@@ -107,7 +107,10 @@ def test_a_top_on_a_small_patch_sticks_when_an_implicit_method_says():
 
 @pytest.mark.parametrize(
     ("integrator", "resists"),
-    [(make_integrator(), True), (SciPy("dop853", 1e-12), False)],
+    [
+        (make_integrator(), True),
+        pytest.param(SciPy("dop853", 1e-12), False, marks=pytest.mark.slow),
+    ],
     ids=["best-rolling", "dop853"],
 )
 def test_friction_that_turns_slip_much_faster_than_it_ends_takes_few_steps(integrator, resists):

@@ -234,8 +234,8 @@ def test_published_equations_follow_from_newton_and_euler():
 @pytest.mark.parametrize(
     "moment",
     [
-        pytest.param(moment_as_printed, id="F x a, with the weight in F"),
-        pytest.param(moment_as_printed_without_the_weight, id="F x a"),
+        pytest.param(moment_as_printed, id="F x a, with the weight in F", marks=pytest.mark.slow),
+        pytest.param(moment_as_printed_without_the_weight, id="F x a", marks=pytest.mark.slow),
         pytest.param(moment_as_printed_in_the_right_order, id="a x F, with the weight in F"),
     ],
 )

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from campaigns import among
 from dry_runs import DryRun
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.mode import split
@@ -44,7 +45,7 @@ def about_to_stick(random):
     return top, axis, momentum, slip
 
 
-@pytest.mark.parametrize("seed", [1, 5, 8, 17, 35])
+@pytest.mark.parametrize("seed", among([1, 5, 8, 17, 35], check=3))
 def test_slip_ends_on_the_branch_its_direction_turns_to(seed):
     """Against the whole law, which asks at every instant on which branch it is, and an implicit
     method.

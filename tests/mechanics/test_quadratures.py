@@ -103,14 +103,18 @@ SPHERE = Top.of(0.02, 3.0e-6, 3.2e-6, SphereSurface(0.02, 0.006), ViscousLaw(0.3
 EGG = Top.of(0.02, 3.0e-6, 2.5e-6, SpheroidSurface(0.02, 0.028), ViscousLaw(0.3), 9.8)
 
 
-@pytest.mark.parametrize("top", [SPHERE, EGG], ids=["sphere", "egg"])
+FALLING = Angles(1.5, 60.0, 0.5, 30.0, 60.0, (0.1, -0.2))
+RISING = Angles(1.65, -60.0, -2.0, -40.0, 50.0, (0.0, 0.3))
+
+
 @pytest.mark.parametrize(
-    "motion",
+    ("top", "motion"),
     [
-        Angles(1.5, 60.0, 0.5, 30.0, 60.0, (0.1, -0.2)),
-        Angles(1.65, -60.0, -2.0, -40.0, 50.0, (0.0, 0.3)),
+        pytest.param(SPHERE, FALLING, id="sphere-falling"),
+        pytest.param(SPHERE, RISING, marks=pytest.mark.slow, id="sphere-rising"),
+        pytest.param(EGG, FALLING, marks=pytest.mark.slow, id="egg-falling"),
+        pytest.param(EGG, RISING, id="egg-rising"),
     ],
-    ids=["falling", "rising"],
 )
 def test_both_charts_follow_a_marker_that_moves_with_the_body(top, motion):
     """Against k' = omega x k, through the equator and several turns; place and work are integrals

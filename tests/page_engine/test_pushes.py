@@ -67,8 +67,8 @@ def struck(problem: tt.Problem, impulse: float, direction: float) -> tt.Problem:
     ("problem", "impulse", "direction", "mu"),
     [
         (VISCOUS, 0.0, 0.0, 0.05),
-        (VISCOUS, 4e-4, LEFT, None),
-        (VISCOUS, 1e-3, 0.0, None),
+        pytest.param(VISCOUS, 4e-4, LEFT, None, marks=pytest.mark.slow),
+        pytest.param(VISCOUS, 1e-3, 0.0, None, marks=pytest.mark.slow),
         (PATCH, 5e-4, 2.0, 0.1),
         (DRY, 5e-4, -LEFT, None),
     ],
@@ -95,7 +95,14 @@ def test_a_pushed_run_goes_on_as_its_state_launched(
     assert found["metrics"]["final_tilt"] == pytest.approx(float(run["final_tilt"]), abs=1e-7)
 
 
-@pytest.mark.parametrize("problem", [VISCOUS, DRY, VISCOUS.replace({"table.slope": 0.2})])
+@pytest.mark.parametrize(
+    "problem",
+    [
+        pytest.param(VISCOUS, marks=pytest.mark.slow),
+        DRY,
+        VISCOUS.replace({"table.slope": 0.2}),
+    ],
+)
 def test_a_lifted_table_goes_on_as_its_state_launched_on_the_slope(problem: tt.Problem) -> None:
     at, end, slope = 1.5, 3.0, 0.1
     later = np.linspace(0.01, end - at, 40)

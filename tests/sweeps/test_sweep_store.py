@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 from sweep_cases import lively, same, stored
 
-from campaigns import seeds
+from campaigns import among, seeds
 from children import posix_only, started
 from tippetop.problem.presets import report_problem
 from tippetop.support.errors import FileTrouble, InvalidInput
@@ -107,7 +107,7 @@ def test_the_status_alone_decides_what_remains(path, finished):
     xr.testing.assert_identical(stored(sweep, path, resume=True, workers=1).load(), finished[1])
 
 
-@pytest.mark.parametrize("damage", [b"", b"\x00", b"garbage that is no chunk"])
+@pytest.mark.parametrize("damage", among([b"", b"\x00", b"garbage that is no chunk"], check=1))
 def test_a_task_with_a_damaged_status_is_computed_again(path, finished, damage):
     (path / "is_done" / "c" / "0" / "0").write_bytes(damage)
     store = Store.resume(path, quick())
@@ -124,10 +124,14 @@ def test_a_task_with_a_damaged_status_is_computed_again(path, finished, damage):
             "problem.friction.mu",
         ),
         (Sweep(quick().problem, quick().grid, 0.2, 1e-9), "duration"),
-        (Sweep(quick().problem, quick().grid, 0.1, 1e-8), "tolerance"),
+        pytest.param(
+            Sweep(quick().problem, quick().grid, 0.1, 1e-8), "tolerance", marks=pytest.mark.slow
+        ),
         (lively("fly", 7, 4, 0.1, 1e-9), r"over\.launch\.spin\.count"),
         (Sweep(quick().problem, Product(quick().grid.axes[::-1]), 0.1, 1e-9), "over"),
-        (lively("stop", 6, 4, 0.1, 1e-9), "problem.contact.liftoff"),
+        pytest.param(
+            lively("stop", 6, 4, 0.1, 1e-9), "problem.contact.liftoff", marks=pytest.mark.slow
+        ),
     ],
 )
 def test_another_sweep_is_refused_by_what_differs(tmp_path, other, named):
