@@ -15,7 +15,7 @@ from tippetop.contact.closed_contacts import ClosedContacts
 from tippetop.contact.closed_pair import Before, ClosedPair, rolling_of
 from tippetop.contact.collision import SLOWEST_REBOUND, collision
 from tippetop.contact.contact_mode import ContactMode, mode_on_two, sliding_on_two
-from tippetop.contact.face_impact import LEAN, NOT_TIPPED, SLOWEST_ON_FACE, face_impact
+from tippetop.contact.face_impact import NOT_TIPPED, SLOWEST_ON_FACE, face_impact
 from tippetop.contact.face_mode import (
     STOPPED,
     TIPPING,
@@ -70,7 +70,7 @@ from tippetop.contact.surfaces import (
     lies_flat,
     lies_on_flat_end,
 )
-from tippetop.contact.tip_onset import BARELY_TILTED, TILTED, TipOnset
+from tippetop.contact.tip_onset import TILTED, TipOnset
 from tippetop.contact.touching import (
     SLOWEST_ROCKING,
     gap_acceleration,
@@ -101,11 +101,14 @@ from tippetop.mechanics.contacts.slip_variables import (
 )
 from tippetop.mechanics.contacts.wrench import Slip, Wrench
 from tippetop.mechanics.face_motion import (
+    BARELY_TILTED,
+    LEAN,
     direction_against,
     face_gap_rate,
     face_speed,
     is_held_on_face,
     law_of_face,
+    leaning,
     leaning_direction,
     lying_flat,
     onto_face,
@@ -745,10 +748,10 @@ class Automaton:
         is barely tilted.
         """
         x, y = direction
-        touching = state._replace(axis=(LEAN * x, LEAN * y, state.axis[2]))
+        touching = leaning(state, direction, LEAN)
         slips = bool(is_slipping(*along_table(touching), contact))
         sticks = is_set_valued(contact.friction) and not slips
-        barely = state._replace(axis=(BARELY_TILTED * x, BARELY_TILTED * y, state.axis[2]))
+        barely = leaning(state, direction, BARELY_TILTED)
         resolved = self.resolve(contact, time, barely, (sticks, False), events=events)
         following, edge = resolved.next, ContactMode(contact, pulls=self.pulls)
         later = resolved.events[len(events) :]

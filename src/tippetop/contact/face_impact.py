@@ -34,35 +34,30 @@ from tippetop.contact.mode import FAILURE
 from tippetop.integrators.unnamed import unnamed_integrator
 from tippetop.mechanics.contacts.forces import is_set_valued
 from tippetop.mechanics.face_motion import (
+    LEAN,
     FaceForces,
     can_hold,
     face_gap_rate,
     face_gap_rate_behind,
     face_speed,
     forces_on_face,
+    leaning,
+    leaning_direction,
     onto_face,
     pressure_reserve,
     rim_speed,
-    sinking_rim,
     sliding_on_face,
     slip_of_face,
     tipping_direction,
     turning_of_face,
 )
+from tippetop.mechanics.impacts.struck_body import FUZZ
 from tippetop.mechanics.invariants import energy
 from tippetop.mechanics.state import SlidingState, State
 from tippetop.mechanics.surfaces.surface import support_at
 from tippetop.mechanics.top import Kind, Top
 from tippetop.mechanics.unsolved import Unsolved
 from tippetop.mechanics.vectors import Horizontal, Row, Scalar, Vector
-
-LEAN = 1e-60
-"""Sine of the tilt that gives the rim its point that is struck: its square is far above that at
-which the contact point is undefined, and far below rounding.
-"""
-
-FUZZ = 1e-14
-"""Approach, relative to the velocities before, that is round-off."""
 
 SLOWEST_ON_FACE = 1e-10
 """Velocity, in natural units, or in an impact relative to its approach, with which slip on a face
@@ -240,32 +235,30 @@ class FaceStrike:
         body more than the energy `most`.
         """
         state, weight = pressed.state, self.top.mass * self.top.gravity
-        leaning = leaning_to(state, self._struck_rim(state))
+        tilted = leaning(state, self._lean(state), LEAN)
         prior = weight * pressed.elapsed
         if pressed.elapsed >= pressed.compression:
             lasts = (1.0 + restitution) * weight * pressed.compression - prior
-            restored = restored_impact(leaning, lasts, self.top)
-            unrestored = Impact(leaning, 0.0, 0.0, 0.0)
+            restored = restored_impact(tilted, lasts, self.top)
+            unrestored = Impact(tilted, 0.0, 0.0, 0.0)
         elif prior == 0.0 or restitution == 0.0:
-            return upright(impact(leaning, restitution, self.top))
+            return upright(impact(tilted, restitution, self.top))
         else:
-            restored = impact(leaning, restitution, self.top, prior=prior)
-            unrestored = impact(leaning, 0.0, self.top)
+            restored = impact(tilted, restitution, self.top, prior=prior)
+            unrestored = impact(tilted, 0.0, self.top)
         gains = energy(upright(restored).state, self.top) > most
         return upright(unrestored if gains else restored)
 
-    def _struck_rim(self, state: State) -> Horizontal:
-        """Return the direction of the point of the rim that is struck: that which sinks fastest, or
-        that over which friction tips the body.
+    def _lean(self, state: State) -> Horizontal:
+        """Return the direction into which the axis leans over the point of the rim that is struck:
+        that which sinks fastest, or that over which friction tips the body.
         """
-        turning = turning_of_face(state.momentum, self.top)
         if rim_speed(state.momentum, self.top) > FUZZ * self._speed(state):
-            return sinking_rim(turning)
+            return leaning_direction(state, self.top)
         lean = tipping_direction(state, self.top)
         if lean is None:
             raise Unsolved(NOT_TIPPED)
-        up = state.axis[2]
-        return (up * lean[0], up * lean[1])
+        return lean
 
     def _struck_or_goes_on(self, mode: FaceMode, moving: State) -> tuple[bool, FaceMode]:
         """Return whether the rim is struck where the pressure has come to it, and the mode of the
@@ -347,12 +340,6 @@ def only_slipping(state: State, velocity: Horizontal, momentum: Scalar) -> State
     without normal velocity and tilting.
     """
     return state._replace(momentum=(0.0, 0.0, momentum), velocity=(*velocity, 0.0))
-
-
-def leaning_to(state: State, rim: Horizontal) -> State:
-    """Return the state in which a point of the rim in some direction touches, not the face."""
-    up = state.axis[2]
-    return state._replace(axis=(up * LEAN * rim[0], up * LEAN * rim[1], up))
 
 
 def upright(struck: Impact) -> Impact:

@@ -17,6 +17,7 @@ from tippetop.contact.mode import COMPLETED, FAILURE, Mode, ModeEnd, Segment
 from tippetop.integrators.base import Integrator
 from tippetop.integrators.dense import DenseSolution, as_array
 from tippetop.mechanics.contacts.gauss_points import GAUSS, PARTS, STAGES
+from tippetop.mechanics.face_motion import BARELY_TILTED
 from tippetop.mechanics.state import State
 from tippetop.mechanics.vectors import Horizontal, Row, solve
 
@@ -42,9 +43,6 @@ UNMOVED = 3e-16
 
 GUESSES = 2
 """Iterations of the first guess: by the second the force has grown as the velocity has."""
-
-BARELY_TILTED = 1e-8
-"""Sine of the tilt at which the rates are those at first, to as much."""
 
 FIRST_TILT = 1e-13
 """Sine of the tilt of the first instant of a body that tilts at a rate: the energy of the result is

@@ -32,6 +32,17 @@ fastest: more slowly nothing tips. And how often the interval is halved in which
 """
 
 
+LEAN = 1e-60
+"""Sine of the tilt that gives the rim its point that is struck: its square is far above that at
+which the contact point is undefined, and far below rounding.
+"""
+
+BARELY_TILTED = 1e-8
+"""Sine of the tilt at which the rates are those at first, to as much: at `LEAN` their terms with
+its inverse, which cancel, would leave no digits.
+"""
+
+
 class FaceForces(NamedTuple):
     """What the table does to a body on its face."""
 
@@ -185,6 +196,13 @@ def sliding_on_face(
     traction = law.traction(velocity, drilling_rate(momentum, top))
     friction = normal * traction.force[0], normal * traction.force[1]
     return forces_on_face(axis, friction, normal, normal * traction.torque, top)
+
+
+def leaning(state: State, direction: Horizontal, sine: float) -> State:
+    """Return the state of a body on its face with its axis leaning into a direction, by the sine of
+    a tilt so small that nothing else changes: a point of the rim touches, not the face.
+    """
+    return state._replace(axis=(sine * direction[0], sine * direction[1], state.axis[2]))
 
 
 def leaning_direction(state: State, top: Top) -> Horizontal:

@@ -20,7 +20,7 @@ from tippetop.mechanics.top import RigidBody, Top
 from tippetop.mechanics.vectors import Horizontal, add, length, scale
 
 FUZZ = 1e-14
-"""Round-off in the velocity of the contact point, relative to what it is made of."""
+"""Round-off in the velocity of a point that strikes, relative to what it is made of."""
 
 Impulse: TypeAlias = tuple[float, ...]
 """Impulse of the table's force so far and that of its torque about the first contact point, the
