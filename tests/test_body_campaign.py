@@ -72,7 +72,7 @@ last impacts are slow.
 """
 
 
-@pytest.mark.parametrize("seed", seeds(1, 20, 300, always=CLOSE_CALLS[::4], sampled=CLOSE_CALLS))
+@pytest.mark.parametrize("seed", seeds(1, 20, 300, always=CLOSE_CALLS[:1], sampled=CLOSE_CALLS))
 def test_random_bodies_keep_what_every_one_must(seed: int) -> None:
     problem = problem_of(np.random.default_rng(seed))
     run = tt.simulate(problem, 0.3, samples=201, integrator="taylor", tolerance=3e-14)

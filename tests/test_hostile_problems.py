@@ -135,7 +135,12 @@ def test_hostile_problems_end_with_an_outcome_or_a_sentence(seeds: range) -> Non
     ("seed", "outcomes"),
     [
         pytest.param(66, {"too_many_steps"}, id="a small patch that is struck"),
-        pytest.param(1284, {"too_many_steps"}, id="slip that is about to end next to a branch"),
+        pytest.param(
+            1284,
+            {"too_many_steps"},
+            id="slip that is about to end next to a branch",
+            marks=pytest.mark.slow,
+        ),
         pytest.param(
             1275, {"inaccurate"}, id="a touchdown without impulse or slip", marks=pytest.mark.slow
         ),

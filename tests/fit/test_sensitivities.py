@@ -313,8 +313,8 @@ FAST_FORCES = (51, 462)
         check=0,
         sample=25,
         claim=600,
-        always=[2, 11, 16, 20],
-        sampled=[164, 233, *LONG, *ENDS_ON_TWO, *FAST_FORCES],
+        always=[2, 16, 20],
+        sampled=[11, 164, 233, *LONG, *ENDS_ON_TWO, *FAST_FORCES],
     ),
 )
 @pytest.mark.filterwarnings("ignore::tippetop.Implausible")

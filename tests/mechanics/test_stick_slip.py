@@ -342,7 +342,9 @@ def test_the_beginning_of_slip_solves_the_equations(family, power, shape):
         )
 
 
-@pytest.mark.parametrize("family", ["resisted", "resisted ellipsoidal"])
+@pytest.mark.parametrize(
+    "family", ["resisted", pytest.param("resisted ellipsoidal", marks=pytest.mark.slow)]
+)
 def test_slip_and_rolling_begin_together(family):
     """Each in its direction, by the equations; the rolling beside the momentum is its own."""
     top = FAMILIES[family](0.02, SPHERE).altered(rolling_resistance=RollingResistance(1e-3))
