@@ -26,7 +26,7 @@ $(BUILT): $(shell find web src/tippetop -name node_modules -prune -o -name built
 PYTEST = $(BIN)/python -m pytest -n auto --dist worksteal
 
 test: $(VENV)/.installed-dev ## Run the tests
-	@echo "This takes about six minutes on two processors that have nothing else to do."
+	@echo "This takes four to five minutes on two processors that have nothing else to do."
 	$(PYTEST)
 
 test-all: $(VENV)/.installed-dev ## Run the tests, and a sample of every campaign
