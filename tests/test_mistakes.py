@@ -129,12 +129,15 @@ OPTIONS = [
     ("simulate --duration long", "--duration: 'long' is not a number (write a number in s"),
     ("simulate --duration 20kg", "--duration: 20kg is a mass, not a time (write it in s"),
     ("simulate --duration 1,5", "--duration: 1,5 is not a number (write 1.5)"),
-    ("simulate --duration 0", "duration: 0 is not a number of seconds greater than 0"),
-    ("simulate --duration -1s", "duration: -1 is not a number of seconds greater than 0"),
+    ("simulate --duration 0", "--duration: 0 is not a number of seconds greater than 0"),
+    ("simulate --duration -1s", "--duration: -1 is not a number of seconds greater than 0"),
     ("simulate --step 1m --integrator rk4", "--step: 1m is a length, not a time"),
     ("simulate --samples 2.5", "--samples: 2.5 is not a whole number"),
-    ("simulate --integrator rk5", "integrator: 'rk5' is not one of"),
-    ("simulate --preset reprot", "preset: 'reprot' is not one of"),
+    ("simulate --integrator rk5", "--integrator: 'rk5' is not one of"),
+    ("simulate --integrator rk4", "--step is missing (write a step size"),
+    ("simulate --samples -3", "--samples: -3 is not a whole number"),
+    ("simulate --tolerance 0", "--tolerance: 0 is not a number from"),
+    ("simulate --preset reprot", "--preset: 'reprot' is not one of"),
     ("simulate --liftoff jump", "contact.liftoff: 'jump' is not one of fly, stop, ignore"),
     ("simulate --set spin", "--set: 'spin' is not FIELD=VALUE, such as launch.spin=155"),
     ("simulate --spin 1 --set launch.spin=2", "launch.spin: 2 is given beside 1"),
@@ -152,6 +155,14 @@ OPTIONS = [
     ("sweep --draw launch.spin=1:2 --count 3 --over friction.mu=1,2", "--draw: 'launch.spin=1:2'"),
     ("sweep --count 3", "--count: 3 is only for --draw (omit it)"),
     ("sweep --over launch.spin=1:2:3 --duration 3m", "--duration: 3m is a length, not a time"),
+    ("sweep --over launch.spin=1:2:3 --tolerance 0", "--tolerance: 0 is not a number"),
+    ("sweep --over launch.spin=1:2:3 --most-events -3", "--most-events: -3 is not a whole"),
+    ("sweep --over launch.spin=1:2:3 --workers 0", "--workers: 0 is not a whole number"),
+    ("sweep --draw launch.spin=1:2 --count 3 --seed -1", "--seed: -1 is not a whole number"),
+    ("steady --at tilt=9", "tilt: 9 is not more than 0"),
+    ("improve --preset friedl --goal far", "--goal: 'far' is not one of"),
+    ("dataset --count 1 --out runs", "--out: 'runs' is not a file name that ends in .zarr"),
+    ("dataset --count 0 --out a.zarr", "--count: 0 is not"),
     ("sweep --over launch.spin=1:2:3 --settled 1s", "--settled: 1s is a time, not an angle"),
 ]
 """Mistakes in options of the command line, and how the sentence begins."""
@@ -169,6 +180,43 @@ def test_a_mistake_in_an_option(
     said = at_the_command_line(monkeypatch, capsys, *command.split())
     assert said.startswith(begin)
     assert list(tmp_path.iterdir()) == []
+
+
+FIT_OPTIONS = [
+    ("--starts 0", "--starts: 0 is not a whole number, at least 1"),
+    ("--noise -1", "--noise: -1 is not a number greater than 0 in the unit of column tilt"),
+    ("--most-runs 0", "--most-runs: 0 is not a whole number, at least 1"),
+    ("--vary friction.mu=2:1", "--vary friction.mu: (2, 1) is not a range"),
+    ("--track two", "--track: 'two' is no track of this file"),
+]
+"""The same of the options of a fit to a file."""
+
+
+@pytest.mark.parametrize(("options", "begin"), FIT_OPTIONS)
+def test_a_mistake_in_an_option_of_a_fit(
+    options: str,
+    begin: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Any,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "film.csv").write_text("time (s),tilt (rad)\n0,0.1\n0.1,0.12\n0.2,0.14\n")
+    command = ["fit", "film.csv", "--vary", "friction.mu", *options.split()]
+    said = at_the_command_line(monkeypatch, capsys, *command)
+    assert said.startswith(begin)
+    assert "None" not in said
+
+
+def test_a_column_with_the_name_of_an_option_stays_one(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Any
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "film.csv").write_text("time (s),tilt (rad)\n0,0.1\n0.1,high\n0.2,0.14\n")
+    command = ["fit", "film.csv", "--vary", "friction.mu", "--tilt", "0.1"]
+    said = at_the_command_line(monkeypatch, capsys, *command)
+    assert "film.csv" in said
+    assert "--tilt" not in said
 
 
 class Unspeakable:

@@ -107,6 +107,32 @@ def test_the_problem_is_one_that_is_simulated(files):
     assert tt.Problem.read(files / "problem.toml").body == tt.Body.turned(files / "ball.toml")
 
 
+def test_a_problem_has_the_remarks_on_its_file_in_comments(files):
+    places = [(20.0 * math.sin(x / 20.0), -20.0 * math.cos(x / 20.0)) for x in range(63)]
+    points = "\n".join(f"{r},{z}" for r, z in places)
+    (files / "points.csv").write_text(f"r (mm),z (mm)\n{points}\n0,20")
+    options = ("points.csv", "--density", "beech")
+    remarks = json.loads(said(*options, "--json", "--no-runs"))["remarks"]
+    assert remarks
+    written = said(*options, "--toml")
+    assert all(f"# {line}\n" in written for remark in remarks for line in remark.splitlines())
+    (files / "problem.toml").write_text(written)
+    assert tt.Problem.read(files / "problem.toml").body.mass > 0.0
+
+
+def test_body_and_improve_look_at_one_launch(files, monkeypatch):
+    """Of what is written, at the spin that is written: not of a body that hardly spins."""
+    seen = []
+    implausible = import_module("tippetop.problem.implausible")
+    monkeypatch.setattr(implausible, "warn_if_implausible", seen.append)
+    monkeypatch.setattr(tt, "improve", misused)
+    said("ball.toml", "--json", "--no-runs")
+    CliRunner().invoke(app, ["improve", "ball.toml"])
+    of_body, of_improve = seen
+    assert of_body == of_improve
+    assert of_body.launch.spin == 155.0
+
+
 def test_the_problem_is_the_one_of_its_runs(files, monkeypatch):
     """What is written is what is followed to say from which spin a body stands."""
     followed = []
@@ -141,8 +167,8 @@ def test_files_are_written_once(files):
         ("top.toml --stl a.3mf", "--stl: 'a.3mf' is not"),
         ("top.toml --stl ball.toml.stl --json --toml", "--toml: beside --json asks for two"),
         ("bowl.csv", "--density is missing"),
-        ("bowl.csv --density 700 --unit ft", "unit: 'ft' is not"),
-        ("bowl.csv --density -1", "density: -1 is not"),
+        ("bowl.csv --density 700 --unit ft", "--unit: 'ft' is not"),
+        ("bowl.csv --density -1", "--density: -1 is not"),
         ("bowl.csv --density 700 --toml", "profile: a sphere of which only tilts"),
         ("none.toml", "none.toml cannot be read"),
         ("top.toml --plot taken.png", "taken.png exists"),

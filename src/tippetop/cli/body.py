@@ -115,14 +115,14 @@ def body(
     require_one_format(as_toml, as_json)
     if as_toml:
         turned = tt.Body.turned(workpiece, whole=whole)
-        written = commented_toml(drilling_launch(turned, SPIN))
+        launch = drilling_launch(turned, SPIN)
     else:
         summary = {"remarks": remarks, **_summary(workpiece, whole, runs)}
     outputs = [_write(workpiece, path, force, whole) for path in files.values()]
-    not_mapped = list(dict.fromkeys(remark for _, remarks in outputs for remark in remarks))
+    not_mapped = list(dict.fromkeys(remark for _, further in outputs for remark in further))
     paths = [path for written_paths, _ in outputs for path in written_paths]
     if as_toml:
-        typer.echo(written.rstrip())
+        typer.echo(commented_toml(launch, [*remarks, *not_mapped]).rstrip())
     elif as_json:
         names = {kind: str(path) for kind, path in files.items()}
         show_json({**summary, "files": names, "not_mapped": not_mapped})

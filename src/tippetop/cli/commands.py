@@ -7,7 +7,7 @@ import warnings
 from typing import Annotated, Any, TextIO
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from tippetop import __version__
 from tippetop.cli.body import body
@@ -17,6 +17,7 @@ from tippetop.cli.engines import engines
 from tippetop.cli.fit import fit
 from tippetop.cli.improve import improve
 from tippetop.cli.lab import lab
+from tippetop.cli.options import PROBLEM_OPTIONS
 from tippetop.cli.problem import problem
 from tippetop.cli.reference import reference
 from tippetop.cli.reproduce import reproduce
@@ -24,11 +25,15 @@ from tippetop.cli.simulate import simulate
 from tippetop.cli.steady import steady
 from tippetop.cli.sweep import sweep
 from tippetop.support.errors import (
+    MISSING,
+    OR_NONE,
     OTHER_OUT,
     OVERWRITE,
     RESUME,
     InvalidInput,
     TippetopError,
+    in_file,
+    renamed,
     reworded,
     within_part,
 )
@@ -41,7 +46,7 @@ UNEXPECTED = re.compile(r"unexpected extra argument(?:s|\(s\))? \((\S+)\)")
 MISUSE = 2
 """Exit code of a command line that is not accepted."""
 
-WORDS = {OVERWRITE: "--force", RESUME: "--resume", OTHER_OUT: "another --out"}
+WORDS = {OVERWRITE: "--force", RESUME: "--resume", OTHER_OUT: "another --out", OR_NONE: ""}
 """Options of the command line, by the arguments of Python that messages of the package name."""
 
 UsageError: Any = typer.BadParameter.__base__
@@ -74,6 +79,32 @@ class Commands(TyperGroup):
             raise typer.Exit(INTERRUPTED) from None
         finally:
             let_end()
+
+
+class Command(TyperCommand):
+    """Command whose refusals name its options, and not the arguments of Python."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command."""
+        try:
+            return super().invoke(ctx)
+        except InvalidInput as error:
+            names = [self._option(field, error, ctx.params) for field in error.field.split(", ")]
+            if None in names:
+                raise
+            raise renamed(in_file(error, ""), ", ".join(map(str, names))) from None
+
+    def _option(self, field: str, error: InvalidInput, stated: dict[str, Any]) -> str | None:
+        """Return the option that states a refused field, if it was stated or is missing.
+
+        A column of a file may have the name of an option that changes the problem.
+        """
+        name, _, part = field.partition(".")
+        is_stated = error.value is MISSING or stated.get(name) is not None
+        if not is_stated or (error.file and name in PROBLEM_OPTIONS):
+            return None
+        options = [one.opts[0] for one in self.params if one.name == name]
+        return f"{options[0]} {part}".rstrip() if options else None
 
 
 def _in_a_sentence(error: Any) -> Exception:
@@ -113,7 +144,7 @@ for command in (
     engines,
     dataset,
 ):
-    app.command()(command)
+    app.command(cls=Command)(command)
 
 
 def _print_version(asked: bool) -> None:

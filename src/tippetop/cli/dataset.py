@@ -7,6 +7,7 @@ import typer
 
 from tippetop.cli.options import NUMBER, Force, Json, number_of, number_option
 from tippetop.cli.terminal import show, show_json
+from tippetop.support.files import require_ending
 from tippetop.support.progress_bar import progress_bar
 
 
@@ -31,6 +32,7 @@ def dataset(
     """
     from tippetop.engines.dataset import write_dataset  # noqa: PLC0415 - slow to import
 
+    require_ending("--out", out, (".zarr",))
     seconds = number_of("--duration", duration, "s")
     with progress_bar("simulating") as progress:
         place = write_dataset(

@@ -1,7 +1,7 @@
 """`tippetop improve`: a top like a body that turns over at less spin, sooner, or stands longer."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any
@@ -33,7 +33,7 @@ from tippetop.cli.workpieces import (
     require_one_format,
     workpiece_in,
 )
-from tippetop.support.errors import MISSING, InvalidInput, within_part
+from tippetop.support.errors import MISSING, InvalidInput
 from tippetop.support.files import place_for, require_ending
 
 
@@ -132,10 +132,7 @@ def improve(
         "stem": number_of("--stem", stem, "m"),
         "trials": trials,
     }
-    try:
-        better = tt.improve(body, goal, whole=completed, **stated)  # type: ignore[arg-type]
-    except InvalidInput as error:
-        raise _of_options(error, ("goal", *stated)) from None
+    better = tt.improve(body, goal, whole=completed, **stated)  # type: ignore[arg-type]
     if plot is not None:
         from tippetop.figures.section import section  # noqa: PLC0415 - slow to import
 
@@ -146,7 +143,7 @@ def improve(
         # From the least spin the last part of the rise takes for ever.
         spins = (better.launch_spin, 1.3 * better.spin)
         launch = drilling_launch(better.body, next(filter(math.isfinite, spins), SPIN))
-        typer.echo(commented_toml(launch).rstrip())
+        typer.echo(commented_toml(launch, remarks).rstrip())
     elif as_json:
         names = [one.name for one in fields(better) if one.name not in ("body", "workpiece")]
         numbers = {name: getattr(better, name) for name in names}
@@ -168,7 +165,7 @@ def _body(
         raise InvalidInput("file", str(file), "one of the two", "is stated beside --preset")
     if file is not None:
         workpiece, remarks = workpiece_in(file, **options)
-        warn_if_implausible(drilling_launch(tt.Body.turned(workpiece, whole=completed)))
+        warn_if_implausible(drilling_launch(tt.Body.turned(workpiece, whole=completed), SPIN))
         return workpiece, remarks
     if preset is None:
         raise InvalidInput("file", MISSING, "the file of a body, or --preset with its name")
@@ -177,15 +174,6 @@ def _body(
             option = f"--{name.replace('_', '-')}"
             raise InvalidInput(option, value, "", "is only for a file", "leave it out")
     return tt.presets.body(preset), []
-
-
-def _of_options(error: InvalidInput, names: Sequence[str]) -> InvalidInput:
-    """Return a refusal of arguments with the names of the options that state them."""
-    fields = error.field.split(", ")
-    if not set(fields) <= set(names):
-        return error
-    error.field = ""
-    return within_part(error, ", ".join(f"--{name}" for name in fields))
 
 
 def _rows(better: "tt.ImprovedTop") -> Iterator[tuple[str, str, str]]:

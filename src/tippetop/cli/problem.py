@@ -1,6 +1,7 @@
 """`tippetop problem`: a problem as TOML, or the JSON Schema of problems."""
 
 import re
+from collections.abc import Sequence
 from typing import Annotated, Literal, get_args, get_origin
 
 import typer
@@ -31,11 +32,13 @@ def problem(
     typer.echo(chosen.to_json() if as_json else commented_toml(chosen).rstrip())
 
 
-def commented_toml(problem: "tt.Problem") -> str:
-    """Return a problem as TOML, with the unit and the meaning of every number in comments."""
+def commented_toml(problem: "tt.Problem", remarks: Sequence[str] = ()) -> str:
+    """Return a problem as TOML, with the unit and the meaning of every number in comments, and
+    before it remarks.
+    """
     table = name = ""
     place = 0
-    lines = []
+    lines = [f"# {line}" for remark in remarks for line in remark.splitlines()]
     for line in problem.to_toml().splitlines():
         if head := TABLE.fullmatch(line):
             table = f"{head[1]}."

@@ -13,7 +13,14 @@ from tippetop.fit.search import MOST_RUNS, FitProgress, Search, deviations_of
 from tippetop.integrators.base import Array
 from tippetop.problem.implausible import warn_if_implausible
 from tippetop.problem.problem import Problem, require_problem
-from tippetop.support.errors import MISSING, InvalidInput, NotConverged, is_number, is_whole
+from tippetop.support.errors import (
+    MISSING,
+    OR_NONE,
+    InvalidInput,
+    NotConverged,
+    is_number,
+    is_whole,
+)
 from tippetop.support.suggestions import not_one_of
 from tippetop.sweeps.axes import in_si_of
 
@@ -106,7 +113,7 @@ def fit(
         ]
         low, high = low[places], high[places]
     if not (starts is None or (is_whole(starts) and starts >= 1)):
-        raise InvalidInput("starts", starts, "a whole number, at least 1; or None for enough")
+        raise InvalidInput("starts", starts, f"a whole number, at least 1{OR_NONE}")
     if not (is_whole(most_runs) and most_runs >= 1):
         raise InvalidInput("most_runs", most_runs, "a whole number, at least 1")
     for one, _ in launches:
@@ -175,10 +182,10 @@ def _ranges(problem: Problem, vary: Any) -> tuple[tuple[str, ...], Array, Array]
     for field, ends in ranges.items():
         pair = (-np.inf, np.inf) if ends is None else ends
         if not (isinstance(pair, list | tuple) and len(pair) == 2):
-            raise InvalidInput(f"vary.{field}", ends, "a range (low, high), or None")
+            raise InvalidInput(f"vary.{field}", ends, "a range (low, high) with low below high")
         lower, upper = (in_si_of(field, end) if isinstance(end, str) else end for end in pair)
         if not (ends is None or (is_number(lower) and is_number(upper) and lower < upper)):
-            raise InvalidInput(f"vary.{field}", ends, "a range (low, high), or None")
+            raise InvalidInput(f"vary.{field}", ends, "a range (low, high) with low below high")
         low.append(lower)
         high.append(upper)
     return tuple(ranges), np.array(low), np.array(high)

@@ -34,6 +34,9 @@ class Described(NamedTuple):
 OVERWRITE, RESUME, OTHER_OUT = "overwrite=True", "resume=True", "another out"
 """Names of arguments in Python in messages; the command line names its options instead."""
 
+OR_NONE = "; or None for enough"
+"""What Python accepts beside a number; at the command line an option is left out instead."""
+
 
 # translate: skip
 class TippetopError(Exception):
@@ -142,7 +145,14 @@ def within_part(error: InvalidInput, part: str, further: int = 0) -> InvalidInpu
 
     `further` is how many further values of the same input are refused.
     """
-    field = ".".join([name for name in (part, error.field) if name])
+    return renamed(error, ".".join([name for name in (part, error.field) if name]), further)
+
+
+def renamed(error: InvalidInput, field: str, further: int = 0) -> InvalidInput:
+    """Return a refusal with another name of the field.
+
+    `further` is how many further values of the same input are refused.
+    """
     return InvalidInput(
         field,
         error.value,
