@@ -15,6 +15,7 @@ from tippetop.fit.fit_result import known_together, search_of
 from tippetop.fit.model import Model
 from tippetop.fit.residual_statistics import (
     are_correlated,
+    can_be_correlated,
     correlation_time,
     durbin_watson_moments,
 )
@@ -458,6 +459,42 @@ def test_residuals_that_alternate_do_not_make_errors_too_small(run):
         assert ("errors are too small" in caution) is is_small
 
 
+@pytest.mark.parametrize("period", [2.0, 3.0, 4.0, 5.0, 9.0])
+def test_a_swing_of_the_residuals_is_named_with_its_period(run, period):
+    """A swing as fast as that hardly moves what is fitted, and makes no error too small."""
+    error = 0.01 * np.cos(2.0 * np.pi * np.arange(len(TIMES)) / period + 0.3)
+    data = tt.Measurement.of_variables(TIMES, {"tilt": run["tilt"].values + error}, noise=0.01)
+    cautions = tt.fit(TRUE, data, "friction.mu", starts=1).cautions
+    caution = next(one for one in cautions if "not random" in one)
+    words = caution.split("they swing ")[1]
+    if words.startswith("from one value to the next"):
+        assert period < 3.0
+    else:
+        assert float(words.split("period of ")[1].split()[0]) == pytest.approx(period, rel=0.05)
+    assert ("errors are too small" in caution) is (period > 6.0)
+
+
+@pytest.mark.parametrize(("count", "is_few"), [(5, True), (25, False)])
+def test_data_too_few_to_show_whether_the_model_fits_say_so(count, is_few):
+    times = np.linspace(0.0, 0.4, count)
+    tilt = tt.simulate(TRUE, 0.4, times=times)["tilt"].values
+    film = tt.Measurement.of_variables(times, {"tilt": tilt}, noise=0.01)
+    cautions = tt.fit(TRUE, film, "friction.mu", starts=1).cautions
+    assert any("too few to show whether the model fits" in one for one in cautions) is is_few
+
+
+@pytest.mark.parametrize(("count", "numbers"), [(5, 1), (8, 4), (12, 8)])
+def test_with_four_degrees_of_freedom_no_pattern_is_named(count, numbers):
+    """Durbin and Watson's statistic of the purest drift or swing is within 2.6 deviations."""
+    columns = np.vander(np.linspace(-1.0, 1.0, count), numbers, increasing=True)
+    fitted = np.linalg.qr(columns)[0]
+    assert not can_be_correlated(fitted)
+    tables = np.random.default_rng(20).normal(size=(2000, count))
+    residuals = tables - tables @ fitted @ fitted.T
+    assert not any(are_correlated(one, fitted) for one in residuals)
+    assert can_be_correlated(np.linalg.qr(columns[:, :1])[0]) is (count > 5)
+
+
 def test_drifts_are_told_from_noise():
     drift = np.cos(np.linspace(0.0, 2.0 * np.pi, 13))
     assert are_correlated(drift)
@@ -582,7 +619,7 @@ def test_the_command_fits_a_file(tmp_path, run):
 COMMANDS = {
     "no fields": ([], "--vary"),
     "a range of one end": (["--vary", "friction.mu=3"], "LOW:HIGH"),
-    "noise of a word": (["--vary", "friction.mu", "--noise", "much"], "noise in film.csv: 'much'"),
+    "noise of a word": (["--vary", "friction.mu", "--noise", "much"], "--noise: 'much'"),
     "a drawing of another kind": (["--vary", "friction.mu", "--plot", "fit.txt"], "--plot"),
     "an unknown field": (["--vary", "friction.nu"], "vary: 'friction.nu'"),
 }

@@ -15,10 +15,12 @@ from tippetop.fit.residual_statistics import (
     MOST_ABOVE,
     RARE_LINE,
     ResidualColumn,
+    can_be_correlated,
     durbin_watson,
     durbin_watson_moments,
     exceeds_noise,
     line_probability,
+    swing_period,
 )
 from tippetop.fit.search import Minimum, Search
 from tippetop.integrators.base import Array
@@ -45,9 +47,8 @@ OUTLIER = 5.0
 """Standardised residual from which on a number counts as an outlier: one in a million random ones
 is larger."""
 
-ALTERNATING = 2.0
-"""Statistic of Durbin and Watson from which on neighbouring residuals cancel: their errors are then
-not too small."""
+TOO_FEW = "the data are too few to show whether the model fits: a wrong one may fit as well"
+"""What is said where no pattern of the residuals would be named."""
 
 RIVAL = 6.0
 """Sum of squares above the least, in variances, up to which another minimum is reported."""
@@ -447,6 +448,9 @@ def _cautions(
             f"chi² is {best.cost:.4g} where {degrees} is expected: the noise is smaller than"
             " stated, and so are the errors"
         )
+    has_pattern = any(can_be_correlated(column.fitted) for column in columns)
+    if not has_pattern and (degrees > 0 or is_stated) and not exceeds_noise(best.cost, degrees):
+        words.append(TOO_FEW)
     deviation = 1.0 if is_stated else np.sqrt(best.cost / max(degrees, 1))
     for column in columns:
         if not column.is_negligible:
@@ -465,23 +469,33 @@ def _cautions_of_column(column: ResidualColumn, deviation: float, is_stated: boo
             f" {OUTLIER:g} standard deviations, {distances.max():.3g} at most: check them"
         )
     if column.is_correlated:
-        ratio, mean = durbin_watson(column.residuals), durbin_watson_moments(column.fitted).mean
-        pattern = f"Durbin-Watson {ratio:.2f}, where {mean:.2f} is expected"
-        probability = line_probability(column.residuals, column.fitted)
-        if probability < RARE_LINE:
-            tables = 1000.0 * probability
-            often = f"{tables:.0f}" if tables >= 1.0 else "fewer than 1"
-            pattern += f"; random ones would swing so regularly in {often} of 1000 tables"
         length, effect = column.correlation_time, ""
-        if not is_stated and length > 1.0:
-            effect = f", and the errors take the data for {count / length:.2g} independent ones"
-        elif ratio < ALTERNATING:
+        if length > 1.0:
             effect = ", and the errors are too small"
+            if not is_stated:
+                effect = f", and the errors take the data for {count / length:.2g} independent ones"
         words.append(
-            f"the residuals of {label} are not random ({pattern}): the model may lack something,"
-            f" such as another law of friction{effect}"
+            f"the residuals of {label} are not random: {_pattern(column)}: the model may lack"
+            f" something, such as another law of friction{effect}"
         )
     return words
+
+
+def _pattern(column: ResidualColumn) -> str:
+    """Return in words what is regular in the residuals of a column."""
+    residuals = column.residuals
+    period = swing_period(residuals)
+    probability = line_probability(residuals, column.fitted)
+    if period is not None and probability < RARE_LINE:
+        tables = 1000.0 * probability
+        often = f"{tables:.0f}" if tables >= 1.0 else "fewer than 1"
+        return (
+            f"they swing with a period of {period:.3g} values, as regularly as random ones in"
+            f" {often} of 1000 tables"
+        )
+    ratio, mean = durbin_watson(residuals), durbin_watson_moments(column.fitted).mean
+    way = "they swing from one value to the next" if ratio > mean else "they drift"
+    return f"{way} (Durbin-Watson {ratio:.2f}, where {mean:.2f} is expected)"
 
 
 def _units(search: Search, numbers: Array) -> list[str]:

@@ -19,6 +19,15 @@ which the oscillation that is left is neither slow nor alternates."""
 FEWEST_RESIDUALS, FEWEST_DEGREES = 8, 2.0
 """Residuals, and those less the fitted numbers, from which on their statistic says something."""
 
+FINER = 16
+"""How much finer than Fourier's the frequencies are at which an oscillation is sought."""
+
+FEWEST_SWINGS = 1.5
+"""Periods within the data from which on an oscillation is a swing, and not a drift."""
+
+MANY_DEGREES = 30.0
+"""Residuals less the fitted numbers from which on some pattern of them is always named."""
+
 MOST_ABOVE = 4.0
 """Standard deviations of a sum of squares from its expected value beyond which noise of the stated
 size does not explain it."""
@@ -148,6 +157,40 @@ def line_probability(series: Array, fitted: Array) -> float:
     removed = np.sum(np.abs(np.fft.rfft(fitted, axis=0))[inner] ** 2, axis=1) / len(series)
     largest, count = float(power.max() / power.sum()), float(np.sum(1.0 - removed))
     return float(min(1.0, count * (1.0 - largest) ** max(count - 1.0, 0.0)))
+
+
+def swing_period(series: Array) -> float | None:
+    """Return the period of the strongest oscillation, in values; None if they drift."""
+    count = len(series)
+    power = np.abs(np.fft.rfft(series, FINER * count)) ** 2
+    turns = float(np.argmax(power)) / FINER
+    return count / turns if turns >= FEWEST_SWINGS else None
+
+
+def can_be_correlated(fitted: Array) -> bool:
+    """Return whether any residuals of a fit would be named as no random ones.
+
+    Tried are the smoothest and the roughest that the fit leaves, and what it leaves of waves.
+
+    Parameters
+    ----------
+    fitted
+        Directions in which the fit moves the data (see `durbin_watson_moments`).
+    """
+    count = len(fitted)
+    if count - np.sum(fitted**2) >= MANY_DEGREES:
+        return True
+    kept = np.eye(count) - fitted @ fitted.T
+    sizes, directions = np.linalg.eigh(kept)
+    basis = directions[:, sizes > 1e-9]
+    if not basis.size:
+        return False
+    _, by_roughness = np.linalg.eigh(
+        basis.T @ np.diff(np.eye(count), axis=0).T @ np.diff(basis, axis=0)
+    )
+    waves = np.fft.rfft(np.eye(count), axis=0)
+    patterns = [*(basis @ by_roughness[:, [0, -1]]).T, *waves.real @ kept, *waves.imag @ kept]
+    return any(are_correlated(one, fitted) for one in patterns if np.abs(one).max() > 1e-9)
 
 
 def correlation_time(series: Array) -> float:
