@@ -8,10 +8,11 @@ that runs as the root of the tilt. No line is shared with the package.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from independent_solver import UP, advance, cross, ellipsoidal, hertz
+from independent_solver import UP, advance, compiled, cross, dot, ellipsoidal, hertz
 
 ENDED = 1e-17
 """Part of its value at launch at which a velocity has ended; so much time is left to it."""
@@ -206,6 +207,73 @@ FLAT = 1e-24
 """Tilt at which a disk is as good as flat: what is left of its wobble takes some 1e-11 s."""
 
 
+class Disk(NamedTuple):
+    """A disk, of which the edge is b below the middle; gravity, and friction of both kinds."""
+
+    m: float
+    I1: float
+    I3: float
+    radius: float
+    b: float
+    g: float
+    mu: float
+    arm: float
+
+
+@compiled
+def leaning_frame(tilt):
+    """Vertical and horizontal directions (leaning, and across it) in the frame."""
+    s, c = math.sin(tilt), math.cos(tilt)
+    return np.array([-s, 0.0, c]), np.array([c, 0.0, s])
+
+
+@compiled
+def leaning_turns(y):
+    """Tilt and angular velocity: across the axis it falls as the root of the tilt."""
+    root = math.exp(0.5 * y[0])
+    return root**2, np.array([root * y[2], root * y[3], y[4]])
+
+
+@compiled
+def ending_rates(disk, y):
+    """Rates of the tilt's logarithm, the azimuth, the angular velocity (3), the first two over
+    the root of the tilt, the horizontal velocity (2) and the time.
+    """
+    tilt, w = leaning_turns(y)
+    lean, across = y[5], y[6]
+    inertia = np.array([disk.I1, disk.I1, disk.I3])
+    a = np.array([disk.radius, 0.0, -disk.b])
+    up, out = leaning_frame(tilt)
+    turn = -w[0] / math.sin(tilt)
+    turning = np.array([w[0], w[1], turn * math.cos(tilt)])
+    rise = -dot(cross(w, a), up)
+    u = lean * out + np.array([0.0, across, 0.0]) + rise * up
+    v = u + cross(w, a)
+    level = w - dot(w, up) * up
+    size = math.sqrt(dot(level, level))
+    pull = up - disk.mu * (v - dot(v, up) * up)
+    moment = cross(a, pull) - disk.arm * level / size
+    # m u' = N pull - m g z, I w' = N moment - turning x I w, and the point of the body that is
+    # lowest does not move up: z.(u' + w' x a + w x a') = 0 in space, where a turns too.
+    free = -cross(turning, inertia * w) / inertia
+    answer = moment / inertia
+    along = pull / disk.m
+    bias = cross(w, cross(turning, a)) + cross(cross(turning, w), a)
+    own = -disk.g + dot(cross(free, a) + bias, up)
+    normal = -own / dot(along + cross(answer, a), up)
+    w1 = free + normal * answer
+    u1 = normal * along
+    lean1 = dot(u1, out) + turn * across
+    across1 = u1[1] - turn * lean
+    root = math.sqrt(tilt)
+    tilting = w1[:2] - 0.5 * y[3] * y[2:4]
+    rates = np.array(
+        [y[3], root * turn, 0.0, 0.0, w1[2] * root, root * lean1, root * across1, root]
+    )
+    rates[2:4] = tilting
+    return rates
+
+
 def ending_disk(problem, times):
     """States and events of a disk with a sharp edge on viscous friction, to its end and beyond.
 
@@ -218,53 +286,13 @@ def ending_disk(problem, times):
     radius, b = body.shape[0].radius, -body.shape[0].center
     g, mu, arm = problem.gravity, problem.friction.mu, problem.rolling_resistance
     a = np.array([radius, 0.0, -b])
-    inertia = np.diag([I1, I1, I3])
-
-    def frame(tilt):
-        """Vertical and horizontal directions (leaning, and across it) in the frame."""
-        s, c = math.sin(tilt), math.cos(tilt)
-        return np.array([-s, 0.0, c]), np.array([c, 0.0, s])
-
-    def turns(y):
-        """Tilt and angular velocity: across the axis it falls as the root of the tilt."""
-        root = math.exp(0.5 * y[0])
-        return root**2, np.array([root * y[2], root * y[3], y[4]])
+    disk = Disk(m, I1, I3, radius, b, g, mu, arm)
 
     def rates(_, y):
-        """Rates of the tilt's logarithm, the azimuth, the angular velocity (3), the first two over
-        the root of the tilt, the horizontal velocity (2) and the time.
-        """
-        (tilt, w), lean, across = turns(y), y[5], y[6]
-        up, out = frame(tilt)
-        turn = -w[0] / math.sin(tilt)
-        turning = np.array([w[0], w[1], turn * math.cos(tilt)])
-        rise = -cross(w, a) @ up
-        u = lean * out + np.array([0.0, across, 0.0]) + rise * up
-        v = u + cross(w, a)
-        level = w - (w @ up) * up
-        size = math.sqrt(level @ level)
-        pull = up - mu * (v - (v @ up) * up)
-        moment = cross(a, pull) - arm * level / size
-        # m u' = N pull - m g z, I w' = N moment - turning x I w, and the point of the body that is
-        # lowest does not move up: z.(u' + w' x a + w x a') = 0 in space, where a turns too.
-        free = -cross(turning, inertia @ w) / np.diag(inertia)
-        answer = moment / np.diag(inertia)
-        along = pull / m
-        bias = cross(w, cross(turning, a)) + cross(cross(turning, w), a)
-        own = -g + (cross(free, a) + bias) @ up
-        normal = -own / ((along + cross(answer, a)) @ up)
-        w1 = free + normal * answer
-        u1 = normal * along
-        lean1 = u1 @ out + turn * across
-        across1 = u1[1] - turn * lean
-        root = math.sqrt(tilt)
-        tilting = w1[:2] - 0.5 * y[3] * y[2:4]
-        return np.array(
-            [y[3], root * turn, *tilting, root * w1[2], root * lean1, root * across1, root]
-        )
+        return ending_rates(disk, y)
 
     w = np.array([-launch.precession * math.sin(launch.tilt), launch.tilt_rate, launch.spin])
-    _, out = frame(launch.tilt)
+    _, out = leaning_frame(launch.tilt)
     u = -cross(w, a)
     u = np.array([u @ out + launch.slip[0], u[1] + launch.slip[1]])
     root = math.sqrt(launch.tilt)
@@ -273,8 +301,8 @@ def ending_disk(problem, times):
     rows, down = [], None
 
     def state(t, y):
-        tilt, w = turns(y)
-        up, _ = frame(tilt)
+        tilt, w = leaning_turns(y)
+        up, _ = leaning_frame(tilt)
         s, c = math.sin(tilt), math.cos(tilt)
         x, e = math.cos(y[1]), math.sin(y[1])
         one, two = np.array([c * x, c * e, -s]), np.array([-e, x, 0.0])

@@ -52,7 +52,7 @@ def followed(name: str, problem: tt.Problem, times: Sequence[float]) -> tuple[li
         function, method = OWN_METHODS[name]
         return *function(problem, times), method
     solver = Solver(problem).follow(times)
-    methods = " and ".join(sorted(solver.methods))
+    methods = " and ".join(sorted(solver.methods, reverse=True))
     return solver.samples, solver.events, f"Newton and Euler with multipliers, {methods}"
 
 
