@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 import tippetop as tt
 from tippetop.contact import contact_mode, slip_end_motion, slip_onset
 from tippetop.contact.natural_launch import NaturalLaunch
+from tippetop.engines.reference import case_of, independent
 from tippetop.mechanics import lying_down
 from tippetop.mechanics.motion import along_table, contact_swing, sliding_contact
 
@@ -198,3 +199,29 @@ def test_the_law_of_the_end_keeps_the_force_of_what_creeps(part: float) -> None:
     after = sliding_contact(*lying_down.scaled_wobble(state, part, False, top), top)
     assert after.slip == pytest.approx(before.slip, rel=1e-6)
     assert after.normal_force == pytest.approx(before.normal_force, rel=1e-4)
+
+
+@pytest.mark.parametrize("part", [0.3, 1e-3, 1e-6])
+def test_a_film_keeps_the_velocity_of_the_centre_of_mass_through_the_law_of_the_end(
+    part: float,
+) -> None:
+    launch = tt.Launch(tilt=1e-6, spin=0.0, precession=900.0, slip=(2e-3, -1e-3))
+    friction = tt.ViscousFriction(mu=2.0)
+    problem = tt.Problem(body=disk(0.2 * R), friction=friction, launch=launch, gravity=G)
+    natural = NaturalLaunch.of(problem)
+    state = along_table(natural.state)
+    swing = contact_swing(state.axis, state.momentum, natural.top)
+    assert math.hypot(*swing) > 1e-5
+    after = lying_down.scaled_wobble(state, part, False, natural.top)
+    assert after.velocity == pytest.approx(state.velocity, rel=1e-15)
+
+
+def test_a_disk_slides_on_upon_a_film_as_an_independent_solver_finds() -> None:
+    """The wobble of its edge before the end, 1e-10 m/s, adds nothing to its velocity."""
+    case = case_of("disk-end")
+    rows = np.array(independent(case)["states"])
+    run = tt.simulate(case.problem, case.duration, times=[0.0, *case.times])
+    lies = case.times > run["event_time"].values[-1]
+    assert lies.sum() == 7
+    velocity = run["velocity"].values[1:][lies, :2]
+    assert np.abs(velocity - rows[lies, 7:9]).max() < 2e-12

@@ -39,7 +39,7 @@ disk, whose friction has an arm that falls with s.
 
 from typing import NamedTuple
 
-from tippetop.mechanics.contacts.forces import spun_up
+from tippetop.mechanics.contacts.forces import is_set_valued, spun_up
 from tippetop.mechanics.motion import angular_velocity, axis_rate, contact_swing
 from tippetop.mechanics.state import SlidingState
 from tippetop.mechanics.surfaces.surface import POLE, support_at
@@ -212,7 +212,9 @@ def scaled_wobble(state: SlidingState, part: Scalar, sticks: bool, top: Top) -> 
     """Return the state where a part of the time left to a wobble is left.
 
     Its direction is kept: how far that turns until then has no bound. Where the contact slips, the
-    spin about the vertical and the slip do not end with the wobble, nor does friction's direction.
+    spin about the vertical does not end with the wobble. Dry friction keeps the slip and its own
+    direction. Friction that vanishes with slip, such as that of a film, has no time to act: it
+    keeps the velocity of the centre of mass.
 
     Parameters
     ----------
@@ -233,6 +235,8 @@ def scaled_wobble(state: SlidingState, part: Scalar, sticks: bool, top: Top) -> 
         momentum = spun_up(axis, (0.0, 0.0, 0.0), (part * p, part * q, part * w), top)
         return SlidingState(axis, momentum, (part * u, part * v))
     momentum = spun_up(axis, (0.0, 0.0, 0.0), (part * p, part * q, w), top)
+    if not is_set_valued(top.friction):
+        return SlidingState(axis, momentum, (u, v))
     before, after = (
         contact_swing(state.axis, state.momentum, top),
         contact_swing(axis, momentum, top),
