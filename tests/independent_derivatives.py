@@ -23,9 +23,6 @@ STEP = 1e-5
 with it, of which the extrapolation leaves 1e-9.
 """
 
-ALIKE = {"ball": ("body.I1", "body.I3")}
-"""Parameters that the second method of a case has as one, so that it cannot vary them alone."""
-
 
 def run_of(case: Case, name: str, factor: float) -> tuple[np.ndarray, list]:
     """Return the numbers at the end, and the events, with a parameter larger by a factor."""
@@ -86,6 +83,5 @@ if __name__ == "__main__":
     for word in sys.argv[1:] or [case.name for case in CASES]:
         name, _, listed = word.partition(":")
         chosen = case_of(name)
-        apart = [one for one in parameters_of(chosen) if one not in ALIKE.get(chosen.name, ())]
-        parameters = listed.split(",") if listed else apart
+        parameters = listed.split(",") if listed else parameters_of(chosen)
         print(write(chosen, parameters), flush=True)

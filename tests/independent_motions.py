@@ -114,14 +114,16 @@ def puck(problem, times):
 
 
 def rolling_ball(problem, times):
-    """States and events of a uniform ball on a patch, against rolling friction, to its rest.
+    """States and events of a ball on a patch, against rolling friction, to its rest.
 
-    Variables are the slip v, the drilling w and the horizontal angular velocity; friction f per
-    weight and its couple give v' = (1 + m R^2/I) g f - (m g R e/I) z x r, with the direction r of
-    rolling and the arm e of its resistance.
+    Its centre of mass is its middle, so that the normal force is its weight. Variables are the slip
+    v, the drilling w and the horizontal angular velocity; Euler's equation in space has the moment
+    of friction f per weight, R f x z, its couple, and -e r with the direction r of rolling and the
+    arm e of its resistance. Where rolling has ended, resistance holds it, and the ball turns about
+    the vertical.
     """
     body, launch, friction = problem.body, problem.launch, problem.friction
-    m, inertia, radius = body.mass, body.I1, body.shape.radius
+    m, I1, I3, radius = body.mass, body.I1, body.I3, body.shape.radius
     g, arm, mu = problem.gravity, problem.rolling_resistance, friction.mu
     patch = friction.patch_radius
     law = hertz(mu, patch)
@@ -142,17 +144,21 @@ def rolling_ball(problem, times):
         return math.exp(y[3]) if rolls else 0.0
 
     def motion(y):
-        v, w, speed, angle = y[:2], y[2], rolling(y), y[4]
+        v, w, speed, angle, n = y[:2], y[2], rolling(y), y[4], y[5:8]
         f, t = law(v, w)
         along = np.array([math.cos(angle), math.sin(angle)])
-        # z x r = (-r_y, r_x); the force at the lowest point has the moment -R z x f.
-        turning = m * g / inertia * (radius * np.array([f[1], -f[0]]) - arm * along)
-        if not rolls:
-            turning = np.zeros(2)
+        omega = np.array([*(speed * along), w])
+        if rolls:
+            momentum = I1 * omega + (I3 - I1) * (n @ omega) * n
+            # z x r = (-r_y, r_x); the force at the lowest point has the moment -R z x f.
+            moment = radius * np.array([f[1], -f[0]]) - arm * along
+            torque = m * g * np.array([*moment, t]) - cross(omega, momentum)
+            turning = torque / I1 + (1.0 / I3 - 1.0 / I1) * (n @ torque) * n
+        else:
+            turning = np.array([0.0, 0.0, m * g * t / (I1 + (I3 - I1) * n[2] ** 2)])
         slipping = g * f + radius * np.array([-turning[1], turning[0]])
         across = turning[1] * along[0] - turning[0] * along[1]
-        omega = np.array([*(speed * along), w])
-        return slipping, m * g * t / inertia, turning @ along, across, cross(omega, y[5:8])
+        return slipping, turning[2], turning[:2] @ along, across, cross(omega, n)
 
     def rates(_, y):
         slipping, drilling, slowing, across, axis = motion(y)
