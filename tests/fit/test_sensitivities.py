@@ -9,7 +9,7 @@ from campaigns import seeds
 from tippetop.fit.dual import Dual, duals, parts_of
 from tippetop.fit.linearized_run import LinearizedRun
 from tippetop.fit.problem_numbers import Direction
-from tippetop.fit.sensitivities import _differences, slopes_of
+from tippetop.fit.variable_slopes import differences
 from tippetop.fit.variational import followed
 from tippetop.graph.derivatives import derivatives
 from tippetop.graph.recording import record
@@ -280,23 +280,6 @@ def richardson(problem, times, field, kinds):
     return found
 
 
-def rounding_of_runs(problem, times, field):
-    """Return what rounding makes of the variables of runs: second differences of runs whose field
-    differs by 1e-11, which are 1e-22 without it.
-    """
-    value = float(problem.get(field))
-    runs = [
-        tt.simulate(problem.replace({field: value * (1.0 + k * 1e-11)}), times[-1], times=times)
-        for k in range(5)
-    ]
-    found = dict.fromkeys(NAMES, 0.0)
-    for name in NAMES:
-        if len({run[name].shape for run in runs}) == 1:
-            values = np.array([run[name].values for run in runs])
-            found[name] = float(np.abs(np.diff(values, 2, axis=0)).max(initial=0.0))
-    return found
-
-
 ENDS_ON_TWO = (55, 80, 534)
 """Seeds in which slip ends on two contacts, with a direction of which few digits are known."""
 
@@ -305,6 +288,10 @@ LONG = (1, 21)
 
 FAST_FORCES = (51, 462)
 """Seeds whose normal force changes fast beside a sample."""
+
+
+WHOLE = (2, 11, 16, 20, 164)
+"""Seeds of which no derivative is missing."""
 
 
 @pytest.mark.parametrize(
@@ -319,14 +306,10 @@ FAST_FORCES = (51, 462)
 )
 @pytest.mark.filterwarnings("ignore::tippetop.Implausible")
 def test_random_problems_agree_with_differences(seed):
-    """Of the first 300 seeds of the campaign nine fail. Where surfaces strike in turns, slip turns
-    round in an impact or ends often, some differ more (25, 113, 122 and 250), and where Euler's
-    angles are read near a pole (69); where slip is about to end for long, or runs nearby go through
-    other events, there is none (187, 200; 251, 279).
-
-    Derivatives are read off two runs, `apart` to either side, as near as the fastest motion asks.
-    What rounding makes of a variable, over that, is not known of its derivative: slip at a small
-    patch changes the force within so little that it is 1e-7 of it.
+    """Where runs nearby go through other events (251 and 279), where slip is about to end for long
+    (187 and 200), or where surfaces strike in turns ever sooner, so that rounding grows from event
+    to event (25, and some events of 113, 240 and 250), derivatives are missing, and a reason says
+    why.
     """
     case = random_case(seed)
     if case is None:
@@ -334,18 +317,18 @@ def test_random_problems_agree_with_differences(seed):
     problem, duration, field = case
     times = np.linspace(0.0, duration, 41)
     kinds = tt.simulate(problem, duration, times=times)["event_kind"].values.tolist()
-    run = LinearizedRun(problem, duration, times, [Direction.of(problem, field)])
-    slopes, reason = slopes_of(run, 0)
+    slopes = tt.sensitivities(problem, duration, [field], times=times)
     beside = richardson(problem, times, field, kinds)
     if beside is None:
         return
-    assert reason == ""
-    rounding, apart = rounding_of_runs(problem, times, field), run.reach(0) * run.fields[0].scale
+    reason = slopes["reason"].values[0]
+    assert reason == "" or seed not in WHOLE
     for name, (expected, error) in beside.items():
-        found = slopes[name]
+        found = slope(slopes, name, field)
+        assert reason or np.isfinite(found).all()
         largest = max(np.max(np.abs(expected), initial=0.0), 1e-300)
-        off = np.max(np.abs(found - expected), initial=0.0)
-        assert off <= 10.0 * error + rounding[name] / apart + 1e-7 * largest, (
+        off = np.nanmax(np.abs(found - expected), initial=0.0)
+        assert off <= 10.0 * error + 1e-6 * largest, (
             name,
             off / largest,
             error / largest,
@@ -440,6 +423,40 @@ def evaluated(recorded, y, p):
     return [values[output.place] for output in recorded.outputs]
 
 
+def test_derivatives_of_which_few_digits_are_known_are_missing():
+    """A top on two surfaces that strike in turns, ever sooner: the last events' times have fewer
+    digits than six, and what comes before them has them.
+    """
+    problem, duration, field = random_case(25)
+    slopes = tt.sensitivities(problem, duration, [field], samples=41)
+    assert "fewer than six digits" in slopes["reason"].item()
+    assert np.isfinite(slope(slopes, "event_time", field)[:80]).all()
+    assert np.isnan(slope(slopes, "event_time", field)[-1])
+    assert np.isfinite(slope(slopes, "x", field)[:26]).all()
+    assert np.isnan(slope(slopes, "x", field)[-1])
+
+
+def test_bounces_that_die_away_have_the_derivatives_of_their_series():
+    """A ball dropped from h rests after (2 h / g)^(1/2) (1 + e) / (1 - e), and lands at parts of
+    that, which go as the root of h.
+    """
+    height, restitution, gravity = 0.02, 0.5, 9.8
+    problem = tt.Problem(
+        body=BALL,
+        friction=tt.ViscousFriction(mu=0.1),
+        launch=tt.Launch(tilt=0.3, spin=3.0, gap=height),
+        contact=tt.Contact(liftoff="fly", restitution=restitution),
+        gravity=gravity,
+    )
+    slopes = tt.sensitivities(problem, 0.25, ["launch.gap"], samples=3)
+    assert slopes["reason"].item() == ""
+    run = tt.simulate(problem, 0.25, samples=3)
+    times = run["event_time"].values
+    assert len(times) > 40
+    found = slope(slopes, "event_time", "launch.gap")
+    np.testing.assert_allclose(found, times / (2.0 * height), rtol=1e-8)
+
+
 def test_runs_beside_may_differ_by_a_sample_and_an_event():
     """Where derivatives end, one of both may reach further; what both have is compared."""
     problem = report_problem(spin=175.0)
@@ -449,7 +466,7 @@ def test_runs_beside_may_differ_by_a_sample_and_an_event():
     assert len(whole.variables["event_time"]) > 1
     cut = whole.run.isel(time=slice(-1), event=slice(-1))
     shorter = whole._replace(run=cut, states=whole.states[:-1])
-    slopes = _differences([whole, shorter], 1.0, np.inf)
+    slopes = differences([whole, shorter, whole, shorter], 1.0)
     for name in ("tilt", "event_time", "axis"):
-        assert len(slopes[name]) == len(whole.variables[name]) - 1
-        np.testing.assert_array_equal(slopes[name], 0.0)
+        assert len(slopes[name].values) == len(whole.variables[name]) - 1
+        np.testing.assert_array_equal(slopes[name].values, 0.0)

@@ -494,8 +494,8 @@ def _pattern(column: ResidualColumn) -> str:
             f" {often} of 1000 tables"
         )
     ratio, mean = durbin_watson(residuals), durbin_watson_moments(column.fitted).mean
-    way = "they swing from one value to the next" if ratio > mean else "they drift"
-    return f"{way} (Durbin-Watson {ratio:.2f}, where {mean:.2f} is expected)"
+    pattern = "they swing from one value to the next" if ratio > mean else "they drift"
+    return f"{pattern} (Durbin-Watson {ratio:.2f}, where {mean:.2f} is expected)"
 
 
 def _units(search: Search, numbers: Array) -> list[str]:

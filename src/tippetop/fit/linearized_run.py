@@ -1,10 +1,11 @@
 """One run and its derivatives: every leg of it followed with what moves it.
 
-A run is a chain of legs. An integrated leg is followed with its variational equations (see
-`variational`). A junction lies between two of them: the guard that ends one, what the automaton
-decides there - a reset, an impact - and the modes that are no equations of motion, such as flights
-and the first and last moments of slip. The derivative of the guard's time gives the state at the
-junction; its own code, called beside the run, gives the derivatives of what comes out of it.
+A run is a chain of legs. An integrated leg, in contact or in flight, is followed with its
+variational equations (see `variational`). A junction lies between two of them: the guard that ends
+one, what the automaton decides there - a reset, an impact - and the modes that are no equations of
+motion, such as the first and last moments of slip. The derivative of the guard's time gives the
+state at the junction; its own code, called beside the run, gives the derivatives of what comes out
+of it.
 
 All derivatives at the ends of legs are total ones: they move with the time of the end.
 """
@@ -20,10 +21,12 @@ import xarray as xr
 from tippetop.contact.automaton import Automaton
 from tippetop.contact.block import Block
 from tippetop.contact.contact_mode import ContactMode
+from tippetop.contact.flight import LANDING, TOUCHING, Flight, is_level
 from tippetop.contact.guards import ENDING, ROLLING_STOPPING, STOPPING
 from tippetop.contact.mode import (
     COMPLETED,
     FAILURE,
+    NUMBER_SIGN,
     EventKind,
     IntegratedMode,
     Mode,
@@ -34,6 +37,7 @@ from tippetop.contact.mode import (
 )
 from tippetop.contact.natural_launch import NaturalLaunch, automaton_of
 from tippetop.contact.slip_onset import ONSET_OVER
+from tippetop.contact.surfaces import TOUCH
 from tippetop.contact.trajectory import Trajectory
 from tippetop.fit.dual import duals, parts_of
 from tippetop.fit.problem_numbers import Direction, StartNumbers
@@ -59,8 +63,9 @@ and rounding over it: slip that is about to end, at 1e-3, is the smallest scale.
 """
 
 READ_BESIDE = 5e-6
-"""How far beside the run its variables are read off, in natural units: the error is the square of
-that over the scale of the motion, as small as 1e-2 for normal forces, and rounding over it.
+"""How far beside the run its variables are read off by two runs, in natural units: the error is the
+square of that over the scale of the motion, as small as 1e-2 for normal forces, and rounding over
+it.
 """
 
 TRIES, SHORTER = 3, 0.1
@@ -72,6 +77,11 @@ GRAZING = 1e-8
 """Rate of a guard where it falls, over the sum of the sizes of its parts, one of each number of the
 motion, below which its time has no derivative: the parts cancel, and rounding leaves few digits of
 what is divided by that rate.
+"""
+
+SHORT_FLIGHT = 1e-2
+"""Duration of a flight, in natural units, up to which it belongs to the junction between others:
+to first order runs beside bounces that die away would soon go through other events.
 """
 
 SLIP_LEFT = 1e-5
@@ -223,10 +233,23 @@ class Beside:
 class LinearizedRun:
     """A run of a problem, and its derivatives in several directions.
 
+    Parameters
+    ----------
+    problem, duration, grid
+        The problem, how long it runs, and when it is sampled, s.
+    directions
+        What is varied.
+    tolerance
+        Tolerance of the integrator, if it is not its own.
+    distance
+        How far beside the run its junctions are followed, in natural units.
+
     Attributes
     ----------
     failures
         Why derivatives do not exist and from which time on, natural units, by direction.
+    is_differenced
+        Whether the derivatives go through junctions of which differences are taken.
     """
 
     def __init__(
@@ -237,8 +260,10 @@ class LinearizedRun:
         directions: Sequence[Direction],
         *,
         tolerance: float | None = None,
+        distance: float = BESIDE,
     ) -> None:
         self.problem, self.duration, self.grid = problem, duration, grid
+        self.distance, self.is_differenced = distance, False
         self.fields = tuple(directions)
         self.directions = tuple([one.rates for one in directions])
         self.numbers = StartNumbers.of(problem)
@@ -292,7 +317,7 @@ class LinearizedRun:
         transition, visits = self.launch, list(self.visits)
         while True:
             junction = Junction(before, [transition], [])
-            while visits and not is_integrated(visits[0].mode):
+            while visits and not is_integrated(visits[0]):
                 visit = visits.pop(0)
                 junction.visits.append(visit)
                 if visit.transition is None:
@@ -320,6 +345,7 @@ class LinearizedRun:
         straight = self._straight(junction, mode)
         if straight is not None:
             return ahead, straight
+        self.is_differenced = True
         for direction in range(len(self.directions)):
             if direction in self.failures:
                 continue
@@ -344,7 +370,28 @@ class LinearizedRun:
             # The axis does not jump: where two surfaces strike in turns, ever sooner, rounding of
             # the rule in its derivative would grow as fast as the time between them shrinks.
             changes[:, :3], ahead = leg.changes[:, :3], leg.times[1]
-        return ahead, changes
+        return ahead, self._touching(visit, changes)
+
+    def _touching(self, visit: Visit, changes: Array) -> Array:
+        """Return the derivatives of the numbers with which a leg begins, where its gaps that are
+        zero stay so.
+
+        Rounding of the rule in them would be divided by the speed with which a surface leaves and
+        returns, which is small where surfaces strike in turns.
+        """
+        mode: Any = visit.mode
+        parameters = np.array(mode.parameters, dtype=float)
+        y = np.array(mode.numbers(visit.state), dtype=float)
+        rates = np.stack([self._parameter_rates(mode, one) for one in self.directions])
+        for guard in mode.motion.guards:
+            is_gap = guard.name.split(NUMBER_SIGN)[0] in (LANDING, TOUCH)
+            if is_gap and abs(guard.value(y.tolist(), parameters.tolist())) <= TOUCHING:
+                slopes, gradient = guard_slopes(guard, (y, changes), (parameters, rates))
+                # The axis stays a unit vector.
+                towards = gradient - np.append(y[:3] * (y[:3] @ gradient[:3]), np.zeros(len(y) - 3))
+                if towards.any():
+                    changes = changes - np.outer(slopes, towards / float(gradient @ towards))
+        return changes
 
     def _straight(self, junction: Junction, mode: Any) -> Array | None:
         """Return the derivatives of the numbers with which the run begins, where nothing happens at
@@ -365,7 +412,7 @@ class LinearizedRun:
             sizes.append(np.max(np.abs(rates.state)))
         else:
             sizes += [np.max(np.abs(leg.changes[direction])), abs(leg.times[1][direction])]
-        return BESIDE / max(1.0, *map(float, sizes))
+        return self.distance / max(1.0, *map(float, sizes))
 
     def fail(self, direction: int, time: float, reason: str) -> None:
         """Say that derivatives do not exist from a time on, which may come before another."""
@@ -422,6 +469,7 @@ class LinearizedRun:
                 (time, np.vstack([start, tangents[some]])),
                 visit.end_time,
                 self.integrator,
+                mode.solution_of,
             )
             if solved is None:
                 size = (1 + len(tangents[some])) * len(start)
@@ -457,18 +505,19 @@ class LinearizedRun:
         """Return the guard that ends a visit, with its gradient over the square of that, and the
         derivatives of the time that the visit lasts; or of the end of the run, without a guard.
         """
-        (last, tangents, slopes), (parameters, rates) = at, carried
-        count, size = tangents.shape
+        last, tangents, slopes = at
+        count = len(tangents)
         mode: Any = visit.mode
         guard = guard_of(mode.motion.guards, visit.end)
         if guard is None:
             return None, np.array([self._end_rate(one) for one in self.directions])
-        y = duals(last, np.vstack([tangents, np.eye(size)]))
-        p = duals(parameters, np.vstack([rates, np.zeros((size, len(parameters)))]))
-        changes, gradient = np.split(parts_of(guard.value(y, p), count + size), [count])
+        changes, gradient = guard_slopes(guard, (last, tangents), carried)
         slope, steepest = float(gradient @ slopes), float(np.linalg.norm(gradient))
         times = np.zeros(count)
-        if abs(slope) > GRAZING * float(np.abs(gradient) @ np.abs(slopes)):
+        # Bounces that die away land ever slower, and do not graze.
+        lands = visit.end is not None and visit.end.cause == LANDING
+        least = 0.0 if lands else GRAZING * float(np.abs(gradient) @ np.abs(slopes))
+        if abs(slope) > least:
             times = -changes / slope
         else:
             lingers = visit.end is not None and visit.end.cause in (STOPPING, ROLLING_STOPPING)
@@ -586,7 +635,7 @@ class LinearizedRun:
             raise Differs(OTHER_EVENTS)
         onwards = automaton.follow(mode, last.mode_end, last.end_time)
         mode_after: Any = onwards.next
-        if not is_integrated(mode_after):
+        if not is_plainly_integrated(mode_after):
             raise Differs(OTHER_EVENTS)
         caught_up = list(mode_after.segments(last.end_time, onwards.state, until, self.integrator))
         if caught_up[-1].mode_end is None or caught_up[-1].mode_end.cause != COMPLETED:
@@ -607,7 +656,9 @@ class LinearizedRun:
             # step along the motion to there would be long where the guard falls slowly.
             guard, towards = leg.guard
             y = y - float(guard.value(y.tolist(), tuple(mode.parameters))) * towards
-        how = replace(leg.visit.end, state=mode.state(y.tolist()))
+            how = mode.end_by_guard(guard.name, mode.state(y.tolist()))
+        else:
+            how = replace(leg.visit.end, state=mode.state(y.tolist()))
         return time, automaton.follow(mode, how, time)
 
     @np.errstate(all="ignore")
@@ -730,7 +781,9 @@ class LinearizedRun:
                 place = 1 + direction % TOGETHER
                 tangent = terms[:, place * size : (place + 1) * size, 0]
                 sizes += [float(np.max(np.abs(tangent), initial=0.0))]
-                rates_of_change = terms[:, :size, 1] / np.diff(solution.knots)[:, None]
+                spans = np.diff(solution.knots)
+                lasts = spans > 0.0  # Rounding may leave a step of no length.
+                rates_of_change = terms[lasts, :size, 1] / spans[lasts, None]
                 fastest = float(np.max(np.abs(rates_of_change), initial=1.0))
                 sizes += [fastest * abs(float(times[direction])) for times in leg.times]
         return beside / max(sizes)
@@ -774,9 +827,35 @@ def require_impact(numbers: StartNumbers, kind: Kind, transition: Transition) ->
         raise Differs(ELASTIC)
 
 
-def is_integrated(mode: object) -> bool:
-    """Return whether a mode is followed by its equations of motion alone."""
-    return isinstance(mode, IntegratedMode) and (type(mode).segments is IntegratedMode.segments)
+def is_integrated(visit: Visit) -> bool:
+    """Return whether a mode is followed by its equations of motion alone.
+
+    The guards of a flight with a vertical axis are others than those of flights beside it. Bounces
+    that die away are followed whole.
+    """
+    if isinstance(visit.mode, Flight):
+        return not is_level(visit.state) and visit.end_time - visit.time > SHORT_FLIGHT
+    return is_plainly_integrated(visit.mode)
+
+
+def is_plainly_integrated(mode: object) -> bool:
+    """Return whether a mode goes from its first step on as the equations of motion say."""
+    return isinstance(mode, IntegratedMode) and type(mode).segments is IntegratedMode.segments
+
+
+def guard_slopes(
+    guard: Guard, at: tuple[Array, Array], carried: tuple[Array, Array]
+) -> tuple[Array, Array]:
+    """Return the derivatives of a guard in every direction, and its gradient.
+
+    `at` are the numbers and their derivatives, `carried` the parameters and theirs.
+    """
+    (y, tangents), (parameters, rates) = at, carried
+    count, size = tangents.shape
+    numbers = duals(y, np.vstack([tangents, np.eye(size)]))
+    others = duals(parameters, np.vstack([rates, np.zeros((size, len(parameters)))]))
+    changes, gradient = np.split(parts_of(guard.value(numbers, others), count + size), [count])
+    return changes, gradient
 
 
 def guard_of(guards: Sequence[Guard], end: ModeEnd | None) -> Guard | None:

@@ -106,13 +106,17 @@ def scale_of(problem: Problem, field: str, number: float | None = None) -> float
     """Return the size of a field by which its changes are measured, SI: its own, or, where that is
     small, `SMALLEST_SCALE` of its natural unit.
     """
-    units, natural = natural_units(top_of(problem)), 1.0
-    si = problem.quantity(field).units
-    if si not in ("", "1"):
-        length, mass, time, _ = exponents_of(si)
-        natural = units.length**length * units.mass**mass * units.time**time
+    natural = natural_size(problem.quantity(field).units, natural_units(top_of(problem)))
     value = float(problem.get(field)) if number is None else number
     return float(max(abs(value), SMALLEST_SCALE * natural))
+
+
+def natural_size(si: str, units: Units) -> float:
+    """Return the natural unit of what is measured in an SI unit, in that."""
+    if si in ("", "1"):
+        return 1.0
+    length, mass, time, _ = exponents_of(si)
+    return float(units.length**length * units.mass**mass * units.time**time)
 
 
 @dataclass(frozen=True)

@@ -180,8 +180,8 @@ def can_be_correlated(fitted: Array) -> bool:
     count = len(fitted)
     if count - np.sum(fitted**2) >= MANY_DEGREES:
         return True
-    kept = np.eye(count) - fitted @ fitted.T
-    sizes, directions = np.linalg.eigh(kept)
+    projection = np.eye(count) - fitted @ fitted.T
+    sizes, directions = np.linalg.eigh(projection)
     basis = directions[:, sizes > 1e-9]
     if not basis.size:
         return False
@@ -189,7 +189,11 @@ def can_be_correlated(fitted: Array) -> bool:
         basis.T @ np.diff(np.eye(count), axis=0).T @ np.diff(basis, axis=0)
     )
     waves = np.fft.rfft(np.eye(count), axis=0)
-    patterns = [*(basis @ by_roughness[:, [0, -1]]).T, *waves.real @ kept, *waves.imag @ kept]
+    patterns = [
+        *(basis @ by_roughness[:, [0, -1]]).T,
+        *waves.real @ projection,
+        *waves.imag @ projection,
+    ]
     return any(are_correlated(one, fitted) for one in patterns if np.abs(one).max() > 1e-9)
 
 

@@ -8,23 +8,27 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tippetop.contact.trajectory import require_limits
-from tippetop.fit.linearized_run import EVENT_STATES, Differs, LinearizedRun, RunReading
-from tippetop.fit.problem_numbers import Direction, require_fields
+from tippetop.fit.linearized_run import BESIDE, LinearizedRun, RunReading
+from tippetop.fit.problem_numbers import Direction, natural_size, require_fields
+from tippetop.fit.variable_slopes import NIL, size_of, slopes_of
 from tippetop.integrators.base import Array
 from tippetop.mechanics.top import natural_units
 from tippetop.problem.problem import Problem, require_problem, top_of
-from tippetop.results.catalogue import DERIVED, LISTED, METRICS, SAMPLED, Variable
 from tippetop.results.checked_times import sample_times
 from tippetop.results.sample_counts import DEFAULT_SAMPLES
 from tippetop.support.units import number_in
 from tippetop.support.validation import require_names
 
-NEARER, TRIES = 0.1, 3
-"""How much nearer to the run its variables are read off, and how often at most, until the runs
-beside it go through its events.
+CHECKED = 0.6
+"""How much nearer to the run its junctions are followed in the check of the derivatives: the error
+of the rule is an eighth then, and rounding another, so that both differ by what the first are off.
 """
 
-TURN = 2.0 * np.pi
+FEW_DIGITS = (
+    "derivatives of which fewer than six digits are known are NaN: rounding grows from event to"
+    " event"
+)
+"""Why single derivatives are missing."""
 
 NO_NUMBER = "not a number in the run itself: {}"
 """Why a metric has no derivatives that is not a number in the run itself."""
@@ -44,7 +48,9 @@ def sensitivities(
     variational equations, and the derivative of the time at which a guard falls takes them through
     events (saltation). What an event does - an impact, a reset - with flights and the first and
     last moments of slip, and how variables are read off the solution, are differentiated by
-    differences at 1e-5 beside the run, which leaves relative errors of 1e-9 to 1e-7.
+    differences at 1e-5 beside the run, which leaves relative errors of 1e-9 to 1e-7. Where events
+    come in turns ever sooner, rounding in them grows: they are differentiated twice, at two
+    distances, which tells how many digits are known.
 
     Parameters
     ----------
@@ -67,8 +73,9 @@ def sensitivities(
         of the time, impulse and energy of every event, and of the state just after it
         (`event_axis`, `event_angular_momentum`, `event_velocity`, `event_height`). The unit of each
         is that of the variable over that of the field, which the coordinate `parameter_units` has.
-        Where a derivative does not exist it is NaN from there on, and `reason`, by parameter, says
-        why. A metric that the run itself does not have, such as the time of turning over where it
+        Where a derivative does not exist it is NaN from there on. One that is not known to six
+        digits of the largest of its variable is NaN, too. `reason`, by parameter, says why. A
+        metric that the run itself does not have, such as the time of turning over where it
         does not turn over within the duration, has none either: its attribute `reason` says so.
 
     Raises
@@ -92,65 +99,42 @@ def sensitivities(
     fields = require_names("vary", vary)
     require_fields(problem, fields, "vary")
     grid = sample_times(duration, samples, times)
-    run = LinearizedRun(problem, duration, grid, [Direction.of(problem, name) for name in fields])
+    directions = [Direction.of(problem, name) for name in fields]
+    run, check = LinearizedRun(problem, duration, grid, directions), None
+    if run.is_differenced:
+        check = LinearizedRun(problem, duration, grid, directions, distance=CHECKED * BESIDE)
+    nominal = run.read()
     columns, reasons = list[dict[str, Array]](), list[str]()
     for direction in range(len(fields)):
-        slopes, reason = slopes_of(run, direction)
+        slopes, reason = _known_slopes(run, check, direction, nominal)
         columns.append(slopes)
         reasons.append(reason)
     units = [problem.quantity(name).units for name in fields]
-    return _labelled(run.read(), columns, [str(name) for name in fields], units, reasons)
+    return _labelled(nominal, columns, [str(name) for name in fields], units, reasons)
 
 
-def slopes_of(run: LinearizedRun, direction: int) -> tuple[dict[str, Array], str]:
-    """Return the derivatives of the variables of a run with respect to a field, and why some do not
-    exist.
+def _known_slopes(
+    run: LinearizedRun, check: LinearizedRun | None, direction: int, nominal: RunReading
+) -> tuple[dict[str, Array], str]:
+    """Return the derivatives of the variables with respect to a field, and why some are missing.
+
+    `check` is the same run, whose junctions were followed at another distance.
     """
-    while True:
-        change, scale = run.reach(direction), run.fields[direction].scale
-        for _ in range(TRIES):
-            try:
-                ends = [run.read_beside(direction, sign * change) for sign in (1.0, -1.0)]
-                break
-            except Differs as differs:
-                error = differs
-                change *= NEARER
-        else:
-            run.fail(direction, error.time, str(error))
-            continue
-        time, reason = run.failures.get(direction, (np.inf, ""))
-        slopes = _differences(ends, 2.0 * change * scale, time * float(run.numbers.units[2]))
-        return slopes, reason
-
-
-def _differences(ends: Sequence[RunReading], apart: float, until: float) -> dict[str, Array]:
-    """Return the slopes of the variables between two runs, NaN from a time on."""
-    up, down = (one.variables for one in ends)
-    slopes = dict[str, Array]()
-    for name, variable in described().items():
-        high, low = up[name], down[name]
-        if high.dtype.kind != "f":
-            continue
-        if high.dims:
-            # Where derivatives end, one of the runs may have a sample or an event more.
-            common = min(len(high), len(low))
-            high, low = high[:common], low[:common]
-        slope: Array = (high.values - low.values) / apart
-        if variable.units == "rad":
-            slope = (np.remainder(slope * apart + 0.5 * TURN, TURN) - 0.5 * TURN) / apart
-        if "time" in high.dims:
-            slope[up["time"].values[: len(slope)] >= until] = np.nan
-        elif "event" in high.dims:
-            slope[up["event_time"].values[: len(slope)] >= until] = np.nan
-        elif np.isfinite(until):
-            slope = np.full_like(slope, np.nan)
-        slopes[name] = slope
-    return slopes
-
-
-def described() -> dict[str, Variable]:
-    """Return all variables of a run that may have derivatives, by name."""
-    return {**SAMPLED, **DERIVED, **METRICS, **LISTED, **EVENT_STATES}
+    if check is not None and direction in check.failures:
+        run.fail(direction, *check.failures[direction])
+    slopes = slopes_of(run, direction)
+    reason = run.failures.get(direction, (np.inf, ""))[1]
+    if check is None:
+        return {name: one.values for name, one in slopes.items()}, reason
+    beside, columns, scale = slopes_of(check, direction), {}, run.fields[direction].scale
+    for name, one in slopes.items():
+        variable = nominal.variables[name]
+        natural = natural_size(variable.attrs.get("units", "1"), nominal.units)
+        size = max(size_of(variable.values), natural)
+        columns[name] = one.known_beside(beside[name], NIL * size / scale)
+    if any(np.any(np.isnan(columns[name]) > np.isnan(slopes[name].values)) for name in slopes):
+        reason = f"{reason}; {FEW_DIGITS}" if reason else FEW_DIGITS
+    return columns, reason
 
 
 def _labelled(

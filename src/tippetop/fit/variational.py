@@ -1,7 +1,8 @@
 """Variational equations of a motion: how a solution moves with its start and its parameters."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from tippetop.fit.dual import Dual, value_of
 from tippetop.graph.derivatives import Tangent, derivatives
 from tippetop.graph.graph import Node
-from tippetop.integrators.base import Array, Integrator, Motion
+from tippetop.integrators.base import Arc, Array, Integrator, Motion
 from tippetop.integrators.dense import DenseSolution
 from tippetop.mechanics.vectors import Scalar
 
@@ -61,6 +62,7 @@ def followed(
     start: tuple[float, Array],
     end: float,
     integrator: Integrator,
+    solution_of: Callable[[Arc], DenseSolution] = attrgetter("solution"),
 ) -> tuple[DenseSolution, Array] | None:
     """Follow a motion and its derivatives from a time to another; None where the integrator fails.
 
@@ -76,6 +78,8 @@ def followed(
         Final time.
     integrator
         The method.
+    solution_of
+        The solution of an arc, in steps that what is read off it needs.
 
     Returns
     -------
@@ -89,7 +93,7 @@ def followed(
     for arc in integrator.integrate(equations, parameters.ravel().tolist(), (time, last), end):
         if arc.failure is not None:
             return None
-        parts.append(arc.solution)
+        parts.append(solution_of(arc))
         last = arc.end_state
     if not np.all(np.isfinite(last)):
         return None
