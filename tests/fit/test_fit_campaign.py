@@ -140,3 +140,22 @@ def test_fits_without_a_caution_hold_the_truth(which):
         assert np.mean([row.has_caution for row in right]) <= 0.1
         covered = np.mean([np.abs(row.scores) < 1.0 for row in rows[::guesses]])
         assert 0.6 < covered < 0.76
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("seed", "jumps"), [(118, True), (119, False)])
+def test_searches_end_in_one_minimum_where_the_misfit_jumps(seed, jumps):
+    """In 118 the top leaves the table in another order beside the minimum; in 119 ten times of
+    turning over move in steps of half a standard deviation.
+    """
+    case, random = case_of(seed)
+    ends = [
+        case.fitted(case.truth * (1.0 + random.uniform(-OFF, OFF, len(case.truth))))
+        for _ in range(2)
+    ]
+    variance = 1.0 if np.isfinite(ends[0].chi2) else float(ends[0].noise[0][0]) ** 2
+    assert abs(ends[0].cost - ends[1].cost) < 0.1 * variance
+    for fitted in ends:
+        assert any("jumps" in one for one in fitted.cautions) == jumps
+        values, errors = (np.array(list(one.values())) for one in (fitted.values, fitted.errors))
+        assert np.all(np.abs(values - case.truth) < 3.0 * errors)

@@ -423,6 +423,11 @@ def _cautions(
         words.append(
             "only the minimum next to the start was looked for (one start): others may fit better"
         )
+    if best.jumps:
+        words.append(
+            "the run jumps at these numbers, as its events come in another order beside them: the"
+            " errors hold on one side of the jump"
+        )
     for rival in rivals:
         numbers = ", ".join(
             f"{name} = {number:.4g}"

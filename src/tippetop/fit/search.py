@@ -97,11 +97,22 @@ EVENT_GRID = {1: 9, 2: 5, 3: 3}
 """Values of each field, by the number of fields, that are tried where data have no phase, such as
 times of events; of more fields the problem's own alone."""
 
-STEPS_REACH, STEPS_TRIED = 1.25, 20
-"""Standard errors around a minimum within which the lowest step is sought, and points that are
-tried there along each direction. Of two searches that end on steps at random one may be 0.7
-variances above the other, a standard error away.
+AROUND = 3.0
+"""Standard errors around a minimum within which a lower one is sought, along each direction. Where
+times of events move in steps, a search ends on one of them, and others 2.5 standard errors away may
+be 2 variances lower; where events change their order within a standard error, the run jumps.
 """
+
+TRIED_AROUND, STEPS_TRIED = 12, 48
+"""Points that are tried there along each direction: of a run, and of times that move in steps."""
+
+LOWER, MOST_ROUNDS = 0.01, 4
+"""Variances by which a point beside a minimum is lower that is searched from again, and how often.
+"""
+
+BESIDE = 1e-3
+"""Part of the last step of Gauss and Newton over which the sum of squares falls, unless the run
+jumps."""
 
 INTERVAL_ROUNDS = 3
 """How often a change about as large as a standard error is sought."""
@@ -120,6 +131,8 @@ class Minimum(NamedTuple):
     message: str
     slopes: Array = np.zeros((0, 0))
     """Derivatives of the residuals, by differences, shape (data, numbers)."""
+    jumps: bool = False
+    """Whether it lies where the run jumps, since events beside it come in another order."""
 
 
 class FitProgress(NamedTuple):
@@ -361,23 +374,31 @@ class Search:
                 self._best = sorted([*self._best, self.refine(start)], key=by_cost)
             self._check()
         self._best = self.distinct(self._best)
-        if self.model.is_event.all() and self._best:
-            self._best[0] = self._lowest_step(self._best[0])
+        if self._best:
+            self._best[0] = self._lowest_around(self._best[0])
 
-    def _lowest_step(self, minimum: Minimum) -> Minimum:
-        """Return the lowest of the points around a minimum, in times of events that move in steps.
+    def _lowest_around(self, minimum: Minimum) -> Minimum:
+        """Return the lowest minimum within a few standard errors of one along each direction."""
+        if self.model.is_event.all():
+            return self._lowest_along(minimum, STEPS_TRIED)
+        for _ in range(MOST_ROUNDS):
+            lowest = self._lowest_along(minimum, TRIED_AROUND)
+            if lowest.cost >= minimum.cost - LOWER * self.variance(minimum.cost):
+                break
+            minimum = min(lowest, self.refine(lowest.numbers), key=by_cost)
+        return minimum
 
-        The sum of squares moves in steps too: a search ends on one of them, and others within a
-        part of a standard error may be lower.
-        """
-        _, strengths, directions = np.linalg.svd(minimum.slopes, full_matrices=False)
+    def _lowest_along(self, minimum: Minimum, tried: int) -> Minimum:
+        """Return the lowest of a minimum and of points around it along each direction."""
+        sizes = self.model.scales(minimum.numbers)
+        _, strengths, directions = np.linalg.svd(minimum.slopes * sizes, full_matrices=False)
         deviation = np.sqrt(self.variance(minimum.cost))
         lowest = minimum
         for strength, direction in zip(strengths, directions, strict=True):
             if strength <= NEGLIGIBLE_SLOPE * strengths[0]:
                 continue
-            for place in np.linspace(-STEPS_REACH, STEPS_REACH, STEPS_TRIED):
-                numbers = minimum.numbers + place * deviation / strength * direction
+            for place in np.linspace(-AROUND, AROUND, tried):
+                numbers = minimum.numbers + place * deviation / strength * direction * sizes
                 numbers = np.clip(numbers, self.low, self.high)
                 values = self.residuals(numbers)
                 cost = float(values @ values)
@@ -561,7 +582,20 @@ class Search:
         reached = self._descend(start, free, tolerance, MOST_STEPS, np.zeros((0, len(start))))
         if reached.converged or has_steps or not np.isfinite(reached.cost):
             return reached
-        return self._by_curvature(reached, free)
+        reached = self._by_curvature(reached, free)
+        if not reached.converged and self._jumps_beside(reached, free):
+            return reached._replace(converged=True, jumps=True)
+        return reached
+
+    def _jumps_beside(self, minimum: Minimum, free: Array) -> bool:
+        """Return whether the sum of squares does not fall where its derivatives say so."""
+        sizes = self.model.scales(minimum.numbers)[free]
+        values, numbers = self.residuals(minimum.numbers), minimum.numbers.copy()
+        slopes = np.nan_to_num(minimum.slopes[:, free]) * sizes
+        step = -np.linalg.lstsq(slopes, values, rcond=NEGLIGIBLE_SLOPE)[0] * sizes
+        numbers[free] = np.clip(numbers[free] + BESIDE * step, self.low[free], self.high[free])
+        beside = self.residuals(numbers)
+        return not beside @ beside < minimum.cost
 
     def _by_curvature(self, start: Minimum, free: Array) -> Minimum:
         """Return the minimum beside a point, by the method of Broyden, Fletcher, Goldfarb, Shanno.
