@@ -110,7 +110,7 @@ LOWER, MOST_ROUNDS = 0.01, 4
 """Variances by which a point beside a minimum is lower that is searched from again, and how often.
 """
 
-BESIDE = 1e-3
+DESCENT_PART = 1e-3
 """Part of the last step of Gauss and Newton over which the sum of squares falls, unless the run
 jumps."""
 
@@ -593,7 +593,9 @@ class Search:
         values, numbers = self.residuals(minimum.numbers), minimum.numbers.copy()
         slopes = np.nan_to_num(minimum.slopes[:, free]) * sizes
         step = -np.linalg.lstsq(slopes, values, rcond=NEGLIGIBLE_SLOPE)[0] * sizes
-        numbers[free] = np.clip(numbers[free] + BESIDE * step, self.low[free], self.high[free])
+        numbers[free] = np.clip(
+            numbers[free] + DESCENT_PART * step, self.low[free], self.high[free]
+        )
         beside = self.residuals(numbers)
         return not beside @ beside < minimum.cost
 
