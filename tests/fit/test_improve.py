@@ -57,7 +57,9 @@ def test_the_least_number_from_which_on_a_test_is_passed(fails, least, guess):
 
 
 def body_of(seed):
-    """Return a random ball with a cavity and a stem, which may or may not turn over."""
+    """Return a random ball with a cavity and a stem that its sphere rights, which may or may not
+    turn over.
+    """
     rng = np.random.default_rng(seed)
     radius = round(rng.uniform(0.01, 0.02), 6)
     family = BowlFamily(radius, 700.0, 1e-3, 1.5e-3, None, 9.8, 0.1)
@@ -66,16 +68,19 @@ def body_of(seed):
             family.high - family.low
         )
         if np.all(family.margins(np.round(at, 6)) > 0.0):
-            return family.body(np.round(at, 6))
+            body = family.body(np.round(at, 6))
+            if body.shapes[0].center > 0.0:
+                return body
 
 
 @pytest.mark.parametrize("seed", seeds(check=0, sample=0, claim=20))
 def test_what_is_claimed_is_seen_in_runs_and_improving_again_makes_nothing_worse(seed):
     better = tt.improve(body_of(seed))
     assert better.spin <= better.before
-    # Between a spin just below that does not stand, and all above that do.
-    below = better.spin * np.linspace(0.99, 1.0, 6)[:-1]
-    assert min(highest(better.body, spin) for spin in below) < UPSIDE_DOWN
+    # Between a spin just below that does not stand, and all above that do. Of the spins below some
+    # stand: impacts decide.
+    below = better.spin * np.linspace(1.0, 0.99, 51)[1:]
+    assert any(highest(better.body, spin) < UPSIDE_DOWN for spin in below)
     assert highest(better.body, 1.001 * better.spin) >= UPSIDE_DOWN
     assert highest(better.body, 1.25 * better.spin) >= UPSIDE_DOWN
     # The solid can be made, and its volume, of a polygon along its profile, has the mass.

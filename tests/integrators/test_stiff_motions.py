@@ -153,6 +153,7 @@ def test_the_implicit_method_relieves_what_is_stiff_and_not_the_rest():
     assert found.end_state == pytest.approx(alone.end_state, abs=1e-8)
 
 
+@pytest.mark.filterwarnings("ignore:Conversion of an array:DeprecationWarning")  # NumPy before 2.4
 def test_a_law_that_takes_no_complex_numbers_is_left_to_the_explicit_method():
     """Derivatives are taken along imaginary steps."""
     motion = Motion(lambda y, _: (-1e6 * math.sin(y[0]),), 1, 0)

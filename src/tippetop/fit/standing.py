@@ -39,7 +39,7 @@ what fingers reach."""
 LEAST = 0.01
 """Part of the first number down to which numbers are tried."""
 
-BEYOND = (1.02, 1.05, 1.1, 1.2, 1.35, 1.5)
+BEYOND = (1.001, 1.003, 1.01, 1.02, 1.05, 1.1, 1.2, 1.35, 1.5)
 """Ratios to the least spin at which runs must stand as well: standing is no monotonic function of
 spin, for impacts decide how a top comes onto its stem."""
 
