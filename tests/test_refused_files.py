@@ -32,5 +32,5 @@ def test_names_that_cannot_be_are_refused_before_anything_is_written(tmp_path, a
 
 def test_a_film_that_would_be_too_long_is_refused_before_the_run_is_followed(tmp_path):
     told = misused(tmp_path, "simulate", "--duration", "4000", "--gif", "run.gif")
-    assert told == "tippetop: duration: 4000 is too long for a film (write at most 999.95 s)\n"
+    assert told == "tippetop: --duration: 4000 is too long for a film (write at most 999.95 s)\n"
     assert list(tmp_path.iterdir()) == []

@@ -100,7 +100,7 @@ def test_an_arc_that_hit_a_guard_leaves_nothing_behind_for_the_next():
 def test_long_motions_are_followed_in_arcs_that_do_not_show(monkeypatch, long):
     times = np.linspace(0.0, KEPLER.end, 200)
     uncut = follow(TAYLOR, KEPLER)
-    monkeypatch.setattr(taylor, "LONG", long)
+    monkeypatch.setattr(taylor, "STEPS_PER_ARC", long)
     arc = follow(TAYLOR, KEPLER)
     assert arc.solution.end == KEPLER.end
     assert arc.steps == uncut.steps > 10
@@ -136,7 +136,7 @@ def test_what_turns_beside_what_blows_up_keeps_its_length_to_the_end(begin, reli
 
 @pytest.mark.parametrize("long", [1, 2, 24, 4096])
 def test_guard_is_found_in_whichever_arc_it_falls(monkeypatch, long):
-    monkeypatch.setattr(taylor, "LONG", long)
+    monkeypatch.setattr(taylor, "STEPS_PER_ARC", long)
     arc = follow(TAYLOR, OSCILLATOR, [Guard("position", lambda y, _: y[0])])
     when = np.pi / 2 / FREQUENCY
     assert arc.guard == "position"

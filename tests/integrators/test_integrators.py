@@ -159,7 +159,7 @@ def test_steps_join(method):
 
 
 CUTS = {
-    "taylor": (taylor, {"LONG": 4}),
+    "taylor": (taylor, {"STEPS_PER_ARC": 4}),
     "page": (stepping, {"FEW": 4, "MANY": 7}),
 }
 """What decides into how many arcs a solution is cut, and smaller numbers of it."""

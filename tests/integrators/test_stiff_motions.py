@@ -11,7 +11,7 @@ from tippetop.integrators import Motion, make_integrator
 from tippetop.integrators.base import Guard
 from tippetop.integrators.collocation import STAGES, Collocation, Step, solved
 from tippetop.integrators.rates import RightHandSide
-from tippetop.integrators.relief import PATIENCE, Relieved, is_stiff
+from tippetop.integrators.relief import STEPS_PER_ARC, Relieved, is_stiff
 
 
 def following(y, numbers):
@@ -125,7 +125,7 @@ def test_the_explicit_method_follows_what_is_not_stiff_however_fast():
     quick = Motion(lambda y, n: (n[0] * y[1], -n[0] * y[0]), 2, 1)
     explicit = Recorded()
     arcs = list(Relieved(explicit).integrate(quick, (1e4,), (0.0, np.array([1.0, 0.0])), 2.0))
-    assert sum(arc.steps for arc in arcs) > 2 * PATIENCE
+    assert sum(arc.steps for arc in arcs) > 2 * STEPS_PER_ARC
     assert [arc.method for arc in arcs] == [None] * len(arcs)
     assert explicit.asked == [0.0]
     assert arcs[-1].end_state == pytest.approx([np.cos(2e4), -np.sin(2e4)], abs=1e-9)
@@ -148,7 +148,7 @@ def test_the_implicit_method_relieves_what_is_stiff_and_not_the_rest():
     found = whole(arcs)
     assert found.failure is None
     # By Taylor's method alone it would be 300,000.
-    assert found.steps < 10 * PATIENCE
+    assert found.steps < 10 * STEPS_PER_ARC
     alone = whole(Collocation(1e-12).integrate(motion, (1e5,), start, 2.0))
     assert found.end_state == pytest.approx(alone.end_state, abs=1e-8)
 
@@ -203,7 +203,7 @@ def test_strong_friction_ends_within_the_budget_and_is_nearly_rolling(mu, rollin
     assert run.attrs["status"] == "completed"
     assert run.attrs["integrator"] == "taylor, collocation"
     assert run.attrs["tolerance"] == Collocation().tolerance
-    assert run["steps"].item() < 2 * PATIENCE
+    assert run["steps"].item() < 2 * STEPS_PER_ARC
     assert run["energy_error"].item() < 1e-12
     assert run["jellett_drift"].item() < 1e-12
     # Creep takes the top from where it would be if it rolled, in proportion to 1 / mu.
@@ -229,7 +229,7 @@ def test_drilling_that_dies_on_a_small_patch_is_followed():
     problem = tt.presets.report_problem(tilt=0.3, spin=20.0).replace({"friction": friction})
     run = tt.simulate(problem, 1.0, samples=101)
     assert run.attrs["status"] == "completed"
-    assert run["steps"].item() < 4 * PATIENCE
+    assert run["steps"].item() < 4 * STEPS_PER_ARC
     assert run["energy_error"].item() < 1e-12
     # It loses little by drilling, and creeps little: nearly a top that rolls.
     rolls = tt.simulate(problem.replace({"friction": tt.CoulombFriction(mu=0.3)}), 1.0, samples=101)

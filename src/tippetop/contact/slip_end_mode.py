@@ -2,6 +2,7 @@
 `tippetop.mechanics.contacts.slip_clock`), and polynomials in time made of that.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
@@ -217,7 +218,8 @@ class SlipEnd(TransientMode):
         motion = self.motion
         values = guard_values(motion, (*mode.parameters, longest, 0.0), clocks)
         for guard, along in zip(motion.guards, values, strict=True):
-            if guard.name not in CLOCK_GUARDS and min(along) <= 0.0:
+            holds = all(value > 0.0 and math.isfinite(value) for value in along)
+            if guard.name not in CLOCK_GUARDS and not holds:
                 return None
         return arrival
 

@@ -216,7 +216,7 @@ ATTRIBUTES: dict[str, dict[str, Any]] = {
     "event_time": {"units": "s", "long_name": "time of the event"},
     "event_kind": {"long_name": "kind of the event", "words": list(EVENT_KINDS)},
     "event_surface": {"long_name": "number of the surface"},
-    "derivative": {"long_name": "derivative of the last state by a field; nan where there is none"},
+    "derivative": {"long_name": "derivative of the state at end_time by a field; nan without one"},
     "derived_problem": {"long_name": "number of the problem that has the derivatives"},
 }
 DIMENSIONS = {

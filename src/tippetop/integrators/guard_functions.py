@@ -20,7 +20,7 @@ RECENT = 64
 def guard_values(
     motion: Motion, parameters: Sequence[Scalar], states: Sequence[Row]
 ) -> list[list[float]]:
-    """Return the values of each guard of a motion in several states, infinite at a pole."""
+    """Return the values of each guard of a motion in several states, not finite at a pole."""
     evaluated = _evaluated(motion, parameters, np.array(states, dtype=float).T)
     if evaluated is not None:
         return evaluated
@@ -45,7 +45,9 @@ def guard_functions(motion: Motion, parameters: Sequence[Scalar]) -> list[StateF
 
         def value(state: Array) -> float:
             every = values(state.tobytes())
-            return plain(state) if every is None else every[number][0]
+            if every is None:
+                return value_of(plain, state)
+            return every[number][0] if math.isfinite(every[number][0]) else math.inf
 
         return value
 
@@ -59,9 +61,8 @@ def _evaluated(
     evaluate = compiled_evaluation(_all_guards(motion), motion.size, motion.parameters)
     if evaluate is None:
         return None
-    values = evaluate(states, parameters)
-    rows: list[list[float]] = np.where(np.isfinite(values), values, math.inf).tolist()
-    return rows
+    values: list[list[float]] = evaluate(states, parameters).tolist()
+    return values
 
 
 @lru_cache(maxsize=64)

@@ -15,10 +15,8 @@ from numpy.typing import NDArray
 
 from tippetop.integrators.base import TOLERANCES, Arc, Array, Integrator, Motion
 from tippetop.integrators.rates import RightHandSide
+from tippetop.integrators.taylor import STEPS_PER_ARC
 from tippetop.mechanics.vectors import Scalar
-
-PATIENCE = 2048
-"""Steps of an explicit method after which it is looked whether the motion is stiff."""
 
 STIFF = 3.0
 """Step times fastest damping from which a motion is stiff: what is damped is then gone within a
@@ -72,7 +70,7 @@ class Relieved:
                 start, steps = (arc.solution.end, arc.end_state), steps + arc.steps
                 if arc.guard is not None or arc.failure is not None or start[0] >= end:
                     return
-                if steps >= PATIENCE:
+                if steps >= STEPS_PER_ARC:
                     step, checked, steps = (start[0] - checked) / steps, start[0], 0
                     if is_stiff(motion, parameters, start[1][None], np.array([step]))[0]:
                         break

@@ -23,8 +23,8 @@ from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.vectors import Scalar
 
-LONG = 2048
-"""Steps in an arc at most."""
+STEPS_PER_ARC = 2048
+"""Steps in an arc at most: after each it is looked whether the motion is stiff."""
 
 PROBES_PER_STEP = 12
 """Intervals of a step at whose ends compiled code looks at the guards."""
@@ -240,7 +240,7 @@ class Taylor:
         run = Run(stepper, parameters, start, end)
         while run.time < end:
             begin = run.time
-            steps, guard, failure = run.advance(LONG)
+            steps, guard, failure = run.advance(STEPS_PER_ARC)
             rounding = steps * np.spacing(abs(run.time))
             if failure is None and guard is None and run.time - begin < min(rounding, end - begin):
                 failure = NO_STEP  # steps shorter than rounding of time lead nowhere
@@ -335,7 +335,7 @@ class CompiledSteps:
 
     def room(self) -> Array:
         """Return room for an arc's rows."""
-        return self.rooms.pop() if self.rooms else np.empty((LONG + 1) * self.layout.row)
+        return self.rooms.pop() if self.rooms else np.empty((STEPS_PER_ARC + 1) * self.layout.row)
 
 
 class Run:

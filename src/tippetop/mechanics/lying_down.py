@@ -213,8 +213,9 @@ def scaled_wobble(state: SlidingState, part: Scalar, sticks: bool, top: Top) -> 
 
     Its direction is kept: how far that turns until then has no bound. Where the contact slips, the
     spin about the vertical does not end with the wobble. Dry friction keeps the slip and its own
-    direction. Friction that vanishes with slip, such as that of a film, has no time to act: it
-    keeps the velocity of the centre of mass.
+    direction. Friction that vanishes with slip, such as that of a film, keeps the velocity of the
+    centre of mass: it has no time to act unless it damps slip within the time that is left, 1e-8 in
+    natural units, and what it changes then is the velocity of the edge, 1e-10 m/s.
 
     Parameters
     ----------

@@ -12,7 +12,8 @@ from tippetop.contact.mode import Status
 from tippetop.contact.trajectory import STEP_LIMIT
 from tippetop.integrators.base import Array
 from tippetop.integrators.polynomials import Polynomials
-from tippetop.integrators.relief import PATIENCE, is_stiff
+from tippetop.integrators.relief import is_stiff
+from tippetop.integrators.taylor import STEPS_PER_ARC
 from tippetop.results.metrics import Ends
 from tippetop.sweeps.axis_extremes import FORCE
 from tippetop.sweeps.lane_arrays import Slots
@@ -201,8 +202,8 @@ class Lanes:
         slots, layout = self.slots, self.slots.layout
         steps = slots.rows[layout.steps, lanes]
         steps_taken = steps - window_start[layout.steps, lanes]
-        patience_ends = steps // PATIENCE > (steps - steps_taken) // PATIENCE
-        lanes, steps_taken = lanes[patience_ends], steps_taken[patience_ends]
+        arc_ends = steps // STEPS_PER_ARC > (steps - steps_taken) // STEPS_PER_ARC
+        lanes, steps_taken = lanes[arc_ends], steps_taken[arc_ends]
         if not len(lanes):
             return
         step = (window_start[layout.remaining, lanes] - slots.remaining[lanes]) / steps_taken

@@ -24,7 +24,7 @@ ROUNDS = 20
 ITERATIONS = 50
 """Iterations in each."""
 
-SLOW = 0.01
+SLOW_TURN = 0.01
 """Turn of directions in an iteration, rad, from which on Newton's method is tried in a round before
 its iterations are over: the directions are near then, and each further iteration brings little.
 """
@@ -97,7 +97,7 @@ def directions(response: Response, start: Sequence[Slip]) -> list[Slip]:
                 if turn + step == 0 and _leads(responses, before):
                     return before
                 break
-            if moved < SLOW and not is_tried:
+            if moved < SLOW_TURN and not is_tried:
                 is_tried, improved = True, _improved(response, ways)
                 if improved is not None:
                     return improved
