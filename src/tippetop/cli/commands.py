@@ -17,7 +17,6 @@ from tippetop.cli.engines import engines
 from tippetop.cli.fit import fit
 from tippetop.cli.improve import improve
 from tippetop.cli.lab import lab
-from tippetop.cli.options import PROBLEM_OPTIONS
 from tippetop.cli.problem import problem
 from tippetop.cli.reference import reference
 from tippetop.cli.reproduce import reproduce
@@ -42,6 +41,9 @@ from tippetop.support.units import is_unit
 
 UNEXPECTED = re.compile(r"unexpected extra argument(?:s|\(s\))? \((\S+)\)")
 """What typer says of an argument that a command does not take."""
+
+OPTIONS_OF_FILES = {"noise", "scale", "track", "start", "view", "unit", "density"}
+"""Options that say how a file is read: a refusal that names the file is of them."""
 
 MISUSE = 2
 """Exit code of a command line that is not accepted."""
@@ -97,11 +99,11 @@ class Command(TyperCommand):
     def _option(self, field: str, error: InvalidInput, stated: dict[str, Any]) -> str | None:
         """Return the option that states a refused field, if it was stated or is missing.
 
-        A column of a file may have the name of an option that changes the problem.
+        A column or a key of a file may have the name of an option.
         """
         name, _, part = field.partition(".")
         is_stated = error.value is MISSING or stated.get(name) is not None
-        if not is_stated or (error.file and name in PROBLEM_OPTIONS):
+        if not is_stated or (error.file and name not in OPTIONS_OF_FILES):
             return None
         options = [one.opts[0] for one in self.params if one.name == name]
         return f"{options[0]} {part}".rstrip() if options else None

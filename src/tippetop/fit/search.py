@@ -375,9 +375,9 @@ class Search:
             self._check()
         self._best = self.distinct(self._best)
         if self._best:
-            self._best[0] = self._lowest_around(self._best[0])
+            self._best[0] = self.lowest_around(self._best[0])
 
-    def _lowest_around(self, minimum: Minimum) -> Minimum:
+    def lowest_around(self, minimum: Minimum) -> Minimum:
         """Return the lowest minimum within a few standard errors of one along each direction."""
         if self.model.is_event.all():
             return self._lowest_along(minimum, STEPS_TRIED)
@@ -385,13 +385,17 @@ class Search:
             lowest = self._lowest_along(minimum, TRIED_AROUND)
             if lowest.cost >= minimum.cost - LOWER * self.variance(minimum.cost):
                 break
-            minimum = min(lowest, self.refine(lowest.numbers), key=by_cost)
+            reached = self.refine(lowest.numbers)
+            if reached.cost >= minimum.cost:
+                break
+            minimum = reached
         return minimum
 
     def _lowest_along(self, minimum: Minimum, tried: int) -> Minimum:
         """Return the lowest of a minimum and of points around it along each direction."""
         sizes = self.model.scales(minimum.numbers)
-        _, strengths, directions = np.linalg.svd(minimum.slopes * sizes, full_matrices=False)
+        slopes = np.nan_to_num(minimum.slopes) * sizes
+        _, strengths, directions = np.linalg.svd(slopes, full_matrices=False)
         deviation = np.sqrt(self.variance(minimum.cost))
         lowest = minimum
         for strength, direction in zip(strengths, directions, strict=True):
@@ -589,15 +593,19 @@ class Search:
 
     def _jumps_beside(self, minimum: Minimum, free: Array) -> bool:
         """Return whether the sum of squares does not fall where its derivatives say so."""
-        sizes = self.model.scales(minimum.numbers)[free]
-        values, numbers = self.residuals(minimum.numbers), minimum.numbers.copy()
+        numbers = minimum.numbers.copy()
+        free = np.logical_and(free, (self.low < numbers) & (numbers < self.high))
+        if not free.any():
+            return False
+        sizes = self.model.scales(numbers)[free]
+        values = self.residuals(numbers)
         slopes = np.nan_to_num(minimum.slopes[:, free]) * sizes
         step = -np.linalg.lstsq(slopes, values, rcond=NEGLIGIBLE_SLOPE)[0] * sizes
         numbers[free] = np.clip(
             numbers[free] + DESCENT_PART * step, self.low[free], self.high[free]
         )
         beside = self.residuals(numbers)
-        return not beside @ beside < minimum.cost
+        return bool(np.isfinite(beside).all() and beside @ beside > minimum.cost)
 
     def _by_curvature(self, start: Minimum, free: Array) -> Minimum:
         """Return the minimum beside a point, by the method of Broyden, Fletcher, Goldfarb, Shanno.

@@ -25,8 +25,8 @@ of the rule is an eighth then, and rounding another, so that both differ by what
 """
 
 FEW_DIGITS = (
-    "derivatives of which fewer than six digits are known are NaN: rounding grows from event to"
-    " event"
+    "derivatives of which fewer than six digits are known are NaN: differences at two distances"
+    " beside the run do not agree better"
 )
 """Why single derivatives are missing."""
 
@@ -45,12 +45,12 @@ def sensitivities(
     """Return the derivatives of a run with respect to fields of its problem.
 
     Nothing is smoothed, and whole runs are not compared. Motion in contact is followed with its
-    variational equations, and the derivative of the time at which a guard falls takes them through
-    events (saltation). What an event does - an impact, a reset - with flights and the first and
-    last moments of slip, and how variables are read off the solution, are differentiated by
-    differences at 1e-5 beside the run, which leaves relative errors of 1e-9 to 1e-7. Where events
-    come in turns ever sooner, rounding in them grows: they are differentiated twice, at two
-    distances, which tells how many digits are known.
+    variational equations, as are flights, and the derivative of the time at which a guard falls
+    takes them through events (saltation). What an event does - an impact, a reset - with the first
+    and last moments of slip, and how variables are read off the solution, are differentiated by
+    differences at 1e-4 to 1e-7 beside the run, which leaves relative errors of 1e-9 to 1e-7. Where
+    events are differentiated so, all of it is done twice, at two distances, which tells how many
+    digits are known.
 
     Parameters
     ----------
@@ -73,9 +73,9 @@ def sensitivities(
         of the time, impulse and energy of every event, and of the state just after it
         (`event_axis`, `event_angular_momentum`, `event_velocity`, `event_height`). The unit of each
         is that of the variable over that of the field, which the coordinate `parameter_units` has.
-        Where a derivative does not exist it is NaN from there on. One that is not known to six
-        digits of the largest of its variable is NaN, too. `reason`, by parameter, says why. A
-        metric that the run itself does not have, such as the time of turning over where it
+        Where a derivative does not exist it is NaN from there on. One that two distances do not
+        give to six digits of the largest of its variable is NaN, too. `reason`, by parameter, says
+        why. A metric that the run itself does not have, such as the time of turning over where it
         does not turn over within the duration, has none either: its attribute `reason` says so.
 
     Raises
