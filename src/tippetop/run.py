@@ -134,7 +134,7 @@ def simulate(
         Number of contact modes, such as sliding and flight, after which the run ends early.
     step_limit
         Number of steps of the integrator after which the run ends early; it is checked after every
-        mode, and within a mode every 2048 steps at the latest.
+        mode, and within a mode every 4096 steps at the latest.
     callback
         Function that is called from time to time with the completed fraction of the run.
 

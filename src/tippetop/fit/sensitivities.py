@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from tippetop.contact.trajectory import require_limits
 from tippetop.fit.linearized_run import BESIDE, LinearizedRun, RunReading
 from tippetop.fit.problem_numbers import Direction, natural_size, require_fields
-from tippetop.fit.variable_slopes import NIL, size_of, slopes_of
+from tippetop.fit.variable_slopes import DIGITS, NIL, Slopes, size_of, slopes_of
 from tippetop.integrators.base import Array
 from tippetop.mechanics.top import natural_units
 from tippetop.problem.problem import Problem, require_problem, top_of
@@ -74,9 +74,10 @@ def sensitivities(
         (`event_axis`, `event_angular_momentum`, `event_velocity`, `event_height`). The unit of each
         is that of the variable over that of the field, which the coordinate `parameter_units` has.
         Where a derivative does not exist it is NaN from there on. One that two distances do not
-        give to six digits of the largest of its variable is NaN, too. `reason`, by parameter, says
-        why. A metric that the run itself does not have, such as the time of turning over where it
-        does not turn over within the duration, has none either: its attribute `reason` says so.
+        give to six digits of the largest of its variable is NaN, too: of those by all fields that
+        are asked for, each field changing by its own size. `reason`, by parameter, says why. A
+        metric that the run itself does not have, such as the time of turning over where it does not
+        turn over within the duration, has none either: its attribute `reason` says so.
 
     Raises
     ------
@@ -104,25 +105,49 @@ def sensitivities(
     if run.is_differenced:
         check = LinearizedRun(problem, duration, grid, directions, distance=CHECKED * BESIDE)
     nominal = run.read()
+    slopes_by_field = [
+        _slopes_before_failures(run, check, direction) for direction in range(len(fields))
+    ]
+    largest = {
+        name: max(
+            one[name].largest * field.scale
+            for one, field in zip(slopes_by_field, run.fields, strict=True)
+        )
+        for name in slopes_by_field[0]
+    }
     columns, reasons = list[dict[str, Array]](), list[str]()
-    for direction in range(len(fields)):
-        slopes, reason = _known_slopes(run, check, direction, nominal)
-        columns.append(slopes)
+    for direction, slopes in enumerate(slopes_by_field):
+        column, reason = _known_slopes(run, check, direction, slopes, largest, nominal)
+        columns.append(column)
         reasons.append(reason)
     units = [problem.quantity(name).units for name in fields]
     return _labelled(nominal, columns, [str(name) for name in fields], units, reasons)
 
 
-def _known_slopes(
-    run: LinearizedRun, check: LinearizedRun | None, direction: int, nominal: RunReading
-) -> tuple[dict[str, Array], str]:
-    """Return the derivatives of the variables with respect to a field, and why some are missing.
-
-    `check` is the same run, whose junctions were followed at another distance.
+def _slopes_before_failures(
+    run: LinearizedRun, check: LinearizedRun | None, direction: int
+) -> dict[str, Slopes]:
+    """Return the derivatives of the variables with respect to a field, NaN from where those of the
+    run or of its check fail.
     """
     if check is not None and direction in check.failures:
         run.fail(direction, *check.failures[direction])
-    slopes = slopes_of(run, direction)
+    return slopes_of(run, direction)
+
+
+def _known_slopes(
+    run: LinearizedRun,
+    check: LinearizedRun | None,
+    direction: int,
+    slopes: dict[str, Slopes],
+    largest: dict[str, float],
+    nominal: RunReading,
+) -> tuple[dict[str, Array], str]:
+    """Return the derivatives of the variables with respect to a field, and why some are missing.
+
+    `check` is the same run, whose junctions were followed at another distance. `largest` has the
+    largest change of each variable where one of the fields changes by its own size, to first order.
+    """
     reason = run.failures.get(direction, (np.inf, ""))[1]
     if check is None:
         return {name: one.values for name, one in slopes.items()}, reason
@@ -131,7 +156,8 @@ def _known_slopes(
         variable = nominal.variables[name]
         natural = natural_size(variable.attrs.get("units", "1"), nominal.units)
         size = max(size_of(variable.values), natural)
-        columns[name] = one.known_beside(beside[name], NIL * size / scale)
+        least = max(DIGITS * largest[name], NIL * size)
+        columns[name] = one.known_beside(beside[name], least / scale)
     if any(np.any(np.isnan(columns[name]) > np.isnan(slopes[name].values)) for name in slopes):
         reason = f"{reason}; {FEW_DIGITS}" if reason else FEW_DIGITS
     return columns, reason

@@ -94,21 +94,15 @@ class Slopes:
             values[self.times >= end] = np.nan
         return replace(self, values=values)
 
-    def known_beside(self, second: Self, nil: float) -> Array:
-        """Return the derivatives, NaN where they are not known to six digits of the largest.
-
-        Parameters
-        ----------
-        second
-            The derivatives as differences at another distance give them.
-        nil
-            Error up to which no digits are asked for.
+    def known_beside(self, second: Self, bound: float) -> Array:
+        """Return the derivatives, NaN where differences at another distance, `second`, or their own
+        estimated errors are off by more than a bound.
         """
         mine, others = self.up_to(second), second.up_to(self)
         off = np.fmax(np.abs(mine.values - others.values), mine.errors)
         values = self.values.copy()
         within: Any = slice(len(off)) if off.ndim else ...
-        values[within] = np.where(off > max(DIGITS * self.largest, nil), np.nan, values[within])
+        values[within] = np.where(off > bound, np.nan, values[within])
         return values
 
 

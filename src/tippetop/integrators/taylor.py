@@ -23,7 +23,7 @@ from tippetop.integrators.polynomials import Polynomials
 from tippetop.mechanics.series import horner
 from tippetop.mechanics.vectors import Scalar
 
-STEPS_PER_ARC = 2048
+STEPS_PER_ARC = 4096
 """Steps in an arc at most: after each it is looked whether the motion is stiff."""
 
 PROBES_PER_STEP = 12
