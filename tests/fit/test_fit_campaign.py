@@ -46,6 +46,12 @@ class Case(NamedTuple):
             return tt.fit(pairs, shared=self.fields, **options)
 
 
+def scores_of(fitted, truth):
+    """Return (fitted - true) / error of the numbers that are sought."""
+    values, errors = (np.array(list(one.values())) for one in (fitted.values, fitted.errors))
+    return (values[: len(truth)] - truth) / errors[: len(truth)]
+
+
 class Verdict(NamedTuple):
     """What became of a fit."""
 
@@ -114,9 +120,7 @@ def verdicts(seed, guesses):
     local, rows = case.fitted(truth, starts=1), list[Verdict]()
     for _ in range(guesses):
         fitted = case.fitted(truth * (1.0 + random.uniform(-OFF, OFF, len(truth))))
-        scores = (np.array(list(fitted.values.values())[: len(truth)]) - truth) / np.array(
-            list(fitted.errors.values())[: len(truth)]
-        )
+        scores = scores_of(fitted, truth)
         variance = 1.0 if np.isfinite(fitted.chi2) else float(local.noise[0][0]) ** 2
         above = (fitted.cost - local.cost) / variance
         rows.append(Verdict(case.kind, scores, bool(fitted.cautions), above, fitted.runs))
@@ -157,5 +161,4 @@ def test_searches_end_in_one_minimum_where_the_misfit_jumps(seed, jumps):
     assert abs(ends[0].cost - ends[1].cost) < 0.1 * variance
     for fitted in ends:
         assert any("jumps" in one for one in fitted.cautions) == jumps
-        values, errors = (np.array(list(one.values())) for one in (fitted.values, fitted.errors))
-        assert np.all(np.abs(values - case.truth) < 3.0 * errors)
+        assert np.all(np.abs(scores_of(fitted, case.truth)) < 3.0)

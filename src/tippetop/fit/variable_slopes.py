@@ -31,7 +31,8 @@ RULE_ROUNDING = 1.5 * np.finfo(float).eps
 
 DIGITS = 5e-7
 """Difference of derivatives that are found by other distances beside the run, over the largest of
-their variable, beyond which fewer than six digits count as known: half of the sixth digit."""
+their variable by any field, beyond which fewer than six digits count as known: half of the sixth
+digit."""
 
 NIL = 1e-9
 """Change of a variable over its largest value, or its natural unit if that is more, where a field
