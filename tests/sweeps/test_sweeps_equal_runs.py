@@ -60,6 +60,12 @@ def of(body: tt.Body, friction: tt.Friction, launch: tt.Launch, **others: Any) -
     return tt.Problem(body=body, friction=friction, launch=launch, **others)
 
 
+def thrown_without_spin(body: tt.Body) -> tt.Problem:
+    """Return the problem of a body that falls leaning on a viscous table and rebounds."""
+    launch = tt.Launch(tilt=1.2, spin=0.0, gap=0.01)
+    return of(body, VISCOUS, launch, contact=tt.Contact(restitution=0.5))
+
+
 HERTZ = tt.ContensouFriction(mu=0.3, patch_radius=1e-3, pressure="hertz")
 ELLIPSOIDAL = tt.ContensouFriction(mu=0.3, patch_radius=1e-3, pressure="ellipsoidal")
 COULOMB = tt.CoulombFriction(mu=0.3)
@@ -189,23 +195,13 @@ ROWS = {
         "lies_down",
     ),
     "ring thrown without spin": Row(
-        of(
-            RING,
-            VISCOUS,
-            tt.Launch(tilt=1.2, spin=0.0, gap=0.01),
-            contact=tt.Contact(restitution=0.5),
-        ),
+        thrown_without_spin(RING),
         {"launch.tilt": [0.8, 1.2, 1.9]},
         0.3,
         "lies_down impact",
     ),
     "coin thrown without spin": Row(
-        of(
-            tt.presets.COIN,
-            VISCOUS,
-            tt.Launch(tilt=1.2, spin=0.0, gap=0.01),
-            contact=tt.Contact(restitution=0.5),
-        ),
+        thrown_without_spin(tt.presets.COIN),
         {"launch.tilt": [0.8, 1.2, 1.9]},
         0.3,
         "lies_down impact",
