@@ -82,6 +82,20 @@ def test_the_page_speaks_another_language(lab: Lab) -> None:
     assert visitor.page.locator("h1").inner_text() != german
 
 
+def test_a_language_is_chosen_before_the_page_is_painted(lab: Lab) -> None:
+    visitor = lab("tab=launch", locale="de-DE")
+    script = """async () => {
+      tippetopLab.set({});
+      await null; // The page is written anew, and language is chosen before that is painted.
+      tippetopLab.set({ lang: "en" });
+    }"""
+    visitor.ask(script)
+    assert visitor.page.locator(".tt-play").get_attribute("aria-label") in (
+        "Play (space)",
+        "Pause (space)",
+    )
+
+
 def test_every_text_is_in_every_language() -> None:
     def names(value: object, prefix: str = "") -> set[str]:
         if isinstance(value, dict):

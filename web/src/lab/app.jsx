@@ -1,6 +1,6 @@
 // The page: scene and plots beside a panel of things to do.
 
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 
 import { Flick } from "../player/flick.js";
 import { createPlayer } from "../player/player.js";
@@ -33,7 +33,7 @@ const PANELS = {
 export function App({ lab }) {
   const [, redraw] = useState(0);
   const [help, turn] = useState(false);
-  useEffect(() => {
+  useLayoutEffect(() => {
     const call = () => redraw((count) => count + 1);
     lab.addEventListener("state", call);
     return () => lab.removeEventListener("state", call);
@@ -130,7 +130,8 @@ function Header({ lab, onHelp }) {
 
 function Stage({ lab, dark }) {
   const host = useRef();
-  useEffect(() => {
+  // The lab has a player at every moment: the one of a new language is there before anything else is done.
+  useLayoutEffect(() => {
     const before = lab.player;
     const player = createPlayer(host.current, {
       theme: dark ? "dark" : "light",

@@ -145,20 +145,22 @@ export class Plots {
     const { name: title, symbol } = part(`quantities.${name}`);
     const { name: unit } = unitOf(QUANTITIES[name], this.units);
     const label = `${symbol}${unit ? ` (${unit})` : ""}`;
+    const full = `${title} ${label}`;
     const figure = document.createElement("figure");
     const caption = document.createElement("figcaption");
     const value = document.createElement("b");
-    caption.append(`${title} ${label}`, value);
+    caption.append(full, value);
     figure.append(caption);
     figure.dataset.quantity = name;
     this.host.append(figure);
     const chart = new uPlot(this.options(name, width, label), null, figure);
     chart.root.setAttribute("role", "img");
+    chart.root.setAttribute("aria-label", full);
     const cursor = document.createElement("i");
     cursor.className = "plot-now";
     chart.over.append(cursor);
     this.seekByPointer(chart, name, value);
-    return { name, chart, cursor, value, title: `${title} ${label}` };
+    return { name, chart, cursor, value, title: full };
   }
 
   options(name, width, label) {
