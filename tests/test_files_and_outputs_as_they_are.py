@@ -35,7 +35,7 @@ def test_options_state_what_a_file_lacks(tmp_path):
     told = misused(tmp_path, "simulate", "top.toml", "--spin", "0")
     assert told == "tippetop: launch.tilt is missing (write a number in rad)\n"
     told = misused(tmp_path, "simulate", "top.toml", "--spin", "fast", "--tilt", "0.1")
-    assert told.startswith("tippetop: launch.spin: 'fast' is not")
+    assert told.startswith("tippetop: --spin: 'fast' is not")
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "latin-1", "utf-8", "utf-8-sig"])

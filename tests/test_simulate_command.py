@@ -121,7 +121,7 @@ def test_names_that_cannot_be_are_refused(words: list[str], sentence: str) -> No
     [
         (
             "simulate --spin fast",
-            "launch.spin: 'fast' is not a number (write a number in rad/s, or with its unit)",
+            "--spin: 'fast' is not a number (write a number in rad/s, or with its unit)",
         ),
         ("simulate --samples 2.5", "--samples: 2.5 is not a whole number"),
         ("simulate --tolerance 1,5", "--tolerance: 1,5 is not a finite number (write 1.5)"),
@@ -171,7 +171,7 @@ def test_a_command_line_that_is_none_is_refused_in_one_sentence(
 )
 def test_a_field_is_given_once(twice: str) -> None:
     done = CliRunner().invoke(app, ["problem", *twice.split()])
-    assert str(done.exception).startswith("launch.spin: 1 is given beside ")
+    assert str(done.exception).startswith("--set launch.spin: 1 is given beside ")
 
 
 @pytest.mark.parametrize(

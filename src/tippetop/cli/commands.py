@@ -17,6 +17,7 @@ from tippetop.cli.engines import engines
 from tippetop.cli.fit import fit
 from tippetop.cli.improve import improve
 from tippetop.cli.lab import lab
+from tippetop.cli.options import FIELDS_OF_OPTIONS
 from tippetop.cli.problem import problem
 from tippetop.cli.reference import reference
 from tippetop.cli.reproduce import reproduce
@@ -102,6 +103,9 @@ class Command(TyperCommand):
         A column or a key of a file may have the name of an option.
         """
         name, _, part = field.partition(".")
+        for option, stated_field in FIELDS_OF_OPTIONS.items():
+            if field == stated_field and stated.get(option) is not None:
+                name, part = option, ""
         is_stated = error.value is MISSING or stated.get(name) is not None
         if not is_stated or (error.file and name not in OPTIONS_OF_FILES):
             return None

@@ -55,6 +55,7 @@ def engines(
         place_for(plot, force)
     list(comparison.tasks(engine, case))
     steps = [number_of("--step", one, "s") or 0.0 for one in step or ()] or comparison.STEPS
+    comparison.check_steps(steps)
     names = comparison.installed(engine)
     remark = ""
     installed_others = set(names) - {"moreau"}

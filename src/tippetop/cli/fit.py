@@ -15,6 +15,7 @@ from tippetop.cli.options import (
     number_of,
     number_option,
     of_a_problem,
+    stated_value,
     write_figure,
 )
 from tippetop.cli.terminal import listing, show, show_json
@@ -131,20 +132,13 @@ def _lines(result: "FitResult") -> list[Any]:
     ]
 
 
-def _vary(text: str) -> dict[str, tuple[float, float] | None]:
+def _vary(text: str) -> dict[str, tuple[Any, Any] | None]:
     """Return fields and ranges from "friction.mu=0.1:0.5,launch.spin"."""
-    fields = dict[str, tuple[float, float] | None]()
+    fields = dict[str, tuple[Any, Any] | None]()
     for part in text.split(","):
         field, equals, ends = part.strip().partition("=")
         low, colon, high = ends.partition(":")
         if equals and not colon:
             raise InvalidInput("--vary", part, "FIELD or FIELD=LOW:HIGH")
-        fields[field] = (_number("--vary", low), _number("--vary", high)) if equals else None
+        fields[field] = (stated_value(low), stated_value(high)) if equals else None
     return fields
-
-
-def _number(option: str, text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise InvalidInput(option, text, "a number") from None

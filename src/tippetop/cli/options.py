@@ -73,7 +73,7 @@ PROBLEM_OPTIONS = {
 }
 """Options that change the problem of a file."""
 
-FIELDS = {
+FIELDS_OF_OPTIONS = {
     "spin": "launch.spin",
     "tilt": "launch.tilt",
     "mu": "friction.mu",
@@ -124,7 +124,7 @@ class Choice(NamedTuple):
         for field, value in map(_parsed, self.changes):
             if field in changes:
                 raise InvalidInput(
-                    field,
+                    f"--set {field}",
                     value,
                     "one of them",
                     f"is given beside {short(changes[field])} for the same field",
@@ -185,8 +185,8 @@ def of_a_problem(
     def with_choice(**values: Any) -> None:
         stated = {name: values.pop(name, None) for name in ("file", *PROBLEM_OPTIONS)}
         settings = {
-            field: _value(stated[name])
-            for name, field in FIELDS.items()
+            field: stated_value(stated[name])
+            for name, field in FIELDS_OF_OPTIONS.items()
             if stated[name] is not None
         }
         choice = Choice(
@@ -227,10 +227,10 @@ def _parsed(change: str) -> tuple[str, Any]:
     field, equals, value = change.partition("=")
     if not equals:
         raise InvalidInput("--set", change, "FIELD=VALUE, such as launch.spin=155")
-    return field, _value(value)
+    return field, stated_value(value)
 
 
-def _value(text: str) -> Any:
+def stated_value(text: str) -> Any:
     """Return the value of a text: a number or list as in JSON, else the text itself."""
     try:
         return json.loads(text)
@@ -276,7 +276,7 @@ def number_of(option: str, text: str | None, units: str) -> float | None:
     """Return the number of an option in SI, converted from its unit if it has one, or None."""
     if text is None:
         return None
-    number = _value(text)
+    number = stated_value(text)
     if is_number(number):
         return float(number)
     if not isinstance(number, str):

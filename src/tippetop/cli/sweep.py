@@ -20,7 +20,7 @@ from tippetop.cli.options import (
     write_figure,
 )
 from tippetop.cli.terminal import facts, show, show_json
-from tippetop.support.errors import MISSING, Described, FileTrouble, InvalidInput
+from tippetop.support.errors import MISSING, Described, FileTrouble, InvalidInput, within_part
 from tippetop.support.files import in_words, place_for, read_text, require_ending
 from tippetop.support.interrupts import INTERRUPTED
 from tippetop.support.progress_bar import progress_bar
@@ -242,13 +242,26 @@ def _chosen_grid(
         if number is not None and not draw:
             raise InvalidInput(name, number, "", "is only for --draw", "omit it")
     if over:
-        return {"over": Product.of([_axis(text) for text in over])}
+        axes = [_axis(text) for text in over]
+        try:
+            return {"over": Product.of(axes)}
+        except InvalidInput as error:
+            raise _of_option("over", error) from None
     if draw:
         if count is None:
             raise InvalidInput("--count", MISSING, "the number of draws")
-        ranges = columns_of([_range(text) for text in draw])
+        columns = [_range(text) for text in draw]
+        try:
+            ranges = columns_of(columns)
+        except InvalidInput as error:
+            raise _of_option("draw", error) from None
         return {"draw": ranges, "count": count, "seed": seed or 0}
     return {}
+
+
+def _of_option(option: str, error: InvalidInput) -> InvalidInput:
+    """Return a refusal of a part of an option, or of all of it, by the option's name."""
+    return error if error.field == option else within_part(error, option)
 
 
 def _axis(text: str) -> tuple[str, Any]:

@@ -243,9 +243,7 @@ def compare(
     FileTrouble
         If results cannot be read or written.
     """
-    for step in steps:
-        if not SHORTEST <= step <= READINGS:
-            raise InvalidInput("step", step, f"a length from {SHORTEST:g} to {READINGS:g} s")
+    check_steps(steps)
     folder = Path(folder)
     chosen = list(tasks(installed(names) if names else installed(), cases))
     make_folder("out", folder)
@@ -309,6 +307,13 @@ def _tried(task: EngineTask, step: float, reference: Exact, drawn: bool) -> dict
 def _run_of(task: EngineTask, step: float) -> dict[str, Any]:
     """Return what names a run in results."""
     return {"case": task.case.name, "setting": task.setting.name, "asked_step": step}
+
+
+def check_steps(steps: Iterable[float]) -> None:
+    """Raise `InvalidInput` unless programs can be measured with steps of all these lengths, s."""
+    for step in steps:
+        if not SHORTEST <= step <= READINGS:
+            raise InvalidInput("step", step, f"a length from {SHORTEST:g} to {READINGS:g} s")
 
 
 def _forget_left_out(result: dict[str, Any], task: EngineTask, steps: Sequence[float]) -> None:

@@ -16,10 +16,13 @@ from tippetop.problem.problem import Problem, require_problem
 from tippetop.support.errors import (
     MISSING,
     OR_NONE,
+    Described,
     InvalidInput,
     NotConverged,
     is_number,
     is_whole,
+    renamed,
+    short,
 )
 from tippetop.support.suggestions import not_one_of
 from tippetop.sweeps.axes import in_si_of
@@ -182,10 +185,14 @@ def _ranges(problem: Problem, vary: Any) -> tuple[tuple[str, ...], Array, Array]
     for field, ends in ranges.items():
         pair = (-np.inf, np.inf) if ends is None else ends
         if not (isinstance(pair, list | tuple) and len(pair) == 2):
-            raise InvalidInput(f"vary.{field}", ends, "a range (low, high) with low below high")
-        lower, upper = (in_si_of(field, end) if isinstance(end, str) else end for end in pair)
+            raise InvalidInput(f"vary.{field}", ends, "a range (low, high)")
+        try:
+            lower, upper = (in_si_of(field, end) if isinstance(end, str) else end for end in pair)
+        except InvalidInput as error:
+            raise renamed(error, f"vary.{field}") from None
         if not (ends is None or (is_number(lower) and is_number(upper) and lower < upper)):
-            raise InvalidInput(f"vary.{field}", ends, "a range (low, high) with low below high")
+            stated = Described(f"{short(pair[0])} to {short(pair[1])}")
+            raise InvalidInput(f"vary.{field}", stated, "a range from a number to a greater one")
         low.append(lower)
         high.append(upper)
     return tuple(ranges), np.array(low), np.array(high)
