@@ -14,6 +14,7 @@ from independent_motions import disk_friction
 from independent_reference import computed
 from independent_solver import Solver, hertz
 from tippetop.cli.commands import app
+from tippetop.engines import derivatives
 from tippetop.engines import reference as suite
 from tippetop.engines.cases import CASES
 
@@ -134,7 +135,9 @@ def test_every_case_has_its_independent_numbers():
         assert np.allclose(np.linalg.norm(rows[:, 1:4], axis=1), 1.0, atol=1e-11)
 
 
-def test_the_suite_says_the_same_in_all_formats(tmp_path):
+def test_the_suite_says_the_same_in_all_formats(tmp_path, monkeypatch):
+    """Without derivatives, which take seconds; `test_suite_in_use.py` compares their files."""
+    monkeypatch.setattr(derivatives, "independent_slopes", lambda _: None)
     suite.write_suite(tmp_path / "suite", ["painleve"])
     folder = tmp_path / "suite"
     told = json.loads((folder / "painleve.json").read_text())
