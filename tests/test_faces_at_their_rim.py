@@ -55,6 +55,22 @@ def test_a_body_whose_slip_rises_through_that_of_its_rim_rolls_on_it(
     assert float(run["energy_error"]) < 1e-14
 
 
+def test_many_samples_of_rolling_on_the_rim_show_the_force_that_few_do() -> None:
+    """Many are read by a compiled function. With a spin of its own the body rolls at another slip,
+    and the force at right angles to its velocity v is m g v / (h w).
+    """
+    ring = tt.Ring(radius=RADIUS, center=-HALF)
+    for spin in (60.0, 45.0):
+        problem = launched(tt.CoulombFriction(mu=0.6), 0.3, spin).replace({"body.shape": ring})
+        run = tt.simulate(problem, 0.3, samples=3001).isel(time=slice(2900, None))
+        assert set(run["mode"].values.tolist()) == {"rolling_flat"}
+        force, velocity = run["contact_force"].values, run["velocity"].values
+        speed = np.linalg.norm(velocity, axis=1)
+        expected = RADIUS / HALF * problem.body.mass * GRAVITY
+        assert np.linalg.norm(force[:, :2], axis=1) == pytest.approx(expected, rel=1e-9)
+        assert np.sum(force * velocity, axis=1) == pytest.approx(0.0, abs=1e-9 * speed.max())
+
+
 def test_rolling_upright_is_the_limit_of_rolling_on_the_rim() -> None:
     """Of a rim that sticks at a small tilt, in steady precession at -g / (h w)."""
     spin, dry = 45.0, tt.CoulombFriction(mu=0.6)

@@ -122,6 +122,27 @@ def test_a_disk_that_slides_and_spins_on_its_face_is_the_same(
     assert not compared(found, run)
 
 
+def test_disks_whose_pressure_differs_are_told_apart_one_after_the_other() -> None:
+    """What is compiled for a face is not that of another pressure, or of a face with a hole."""
+    problems = [
+        tt.Problem(
+            body=tt.Body(
+                mass=0.4,
+                shape=tt.Ring(radius=0.04, center=-0.005, inner_radius=hole),
+                I1=1.6e-4,
+                I3=3.2e-4,
+            ),
+            friction=tt.CoulombFriction(mu=0.3),
+            launch=tt.Launch(tilt=0.0, spin=20.0, slip=(0.4, 0.2)),
+            contact=tt.Contact(face_pressure=pressure),
+        )
+        for hole, pressure in ((0.01, "uniform"), (0.01, "rim"), (0.0, "uniform"))
+    ]
+    questions = [asked(0, DURATION) | {"problem": json.loads(one.to_json())} for one in problems]
+    for found, question in zip(in_javascript(questions), questions, strict=True):
+        assert not compared(found, in_python(question["problem"], DURATION))
+
+
 def test_a_disk_that_sticks_by_static_friction_and_slips_is_the_same() -> None:
     disk = tt.Problem(
         body=tt.Body(mass=0.05, shape=tt.Ring(radius=0.02), I1=5e-6, I3=1e-5),

@@ -128,7 +128,7 @@ class Block:
             if len(segment.solution.terms):
                 mode = segment.mode
                 alike = tuple(top.kind for top in mode.tops)
-                key = mode.form, mode.tops, alike, segment.solution.terms.shape[1:]
+                key = mode.reading_key, mode.tops, alike, segment.solution.terms.shape[1:]
                 kinds.setdefault(key, []).append(number)
         first = np.concatenate([[0], np.cumsum(self.lengths)])
         spans = self.spans

@@ -83,7 +83,7 @@ class ContactMode(IntegratedMode):
 
     @property
     def form(self) -> str:
-        """Modes of the same form and tops read the same from their numbers."""
+        """Name of the equations of motion, with the signs that they need on two contacts."""
         return f"{self.status} {self.rolls:g} {self.sense:g}"
 
     @property

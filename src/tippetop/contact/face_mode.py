@@ -89,9 +89,9 @@ class FaceMode(IntegratedMode):
         return "sliding_flat" if self.slips else "resting_flat"
 
     @property
-    def form(self) -> str:
-        """Modes of the same form and tops read the same from their numbers."""
-        return self.status
+    def reading_key(self) -> tuple[Any, ...]:
+        """Modes of the same key and tops read the same from their numbers."""
+        return (self.form, self.law_type)
 
     @property
     def lasting(self) -> bool:
@@ -241,8 +241,13 @@ class PressedAtRim(FaceMode):
 
     @property
     def form(self) -> str:
-        """Modes of the same form and tops read the same from their numbers."""
+        """Name of the equations of motion."""
         return f"{self.status} at rim"
+
+    @property
+    def reading_key(self) -> tuple[Any, ...]:
+        """Modes of the same key and tops read the same from their numbers."""
+        return (self.form, self.law_type, self.slip)
 
     @property
     def parameters(self) -> tuple[Scalar, ...]:

@@ -287,8 +287,13 @@ class Mode(ABC):
 
     @property
     def form(self) -> str:
-        """Modes of the same form and tops read the same from their numbers."""
+        """Name of the equations of motion, of which a status may have several."""
         return self.status
+
+    @property
+    def reading_key(self) -> tuple[Any, ...]:
+        """Modes of the same key and tops read the same from their numbers."""
+        return (self.form,)
 
     @property
     def label(self) -> str:

@@ -212,10 +212,7 @@ def read_of_kind(reading: Reading, mode: Mode, kind: Kind, y: Array) -> Array:
     ndarray
         Shape (numbers, n).
     """
-    no_top: Any = None
-    evaluation = compiled_evaluation(
-        _of_kind(reading, replace(mode, top=no_top), kind), len(y), kind.numbers
-    )
+    evaluation = compiled_evaluation(_of_kind(reading, topless(mode), kind), len(y), kind.numbers)
     if evaluation is not None:
         return evaluation(y, mode.top.numbers)
     with np.errstate(all="ignore"):
@@ -235,9 +232,14 @@ def is_compiled(mode: Mode, total: int) -> bool:
 def _compiled(reading: Reading, mode: Any, size: int, others: int) -> Evaluation | None:
     """Return the compiled reading of modes of this kind; None where it cannot be compiled."""
     kind = mode.top.kind
-    return compiled_evaluation(
-        _of_kind(reading, mode.without_tops(), kind), size, kind.numbers + others
-    )
+    return compiled_evaluation(_of_kind(reading, topless(mode), kind), size, kind.numbers + others)
+
+
+# translate: skip
+def topless(mode: Any) -> Any:
+    """Return a mode of one top without it, but with its other parameters, which readings need."""
+    no_top: Any = None
+    return replace(mode, top=no_top)
 
 
 # translate: skip

@@ -11,7 +11,7 @@ import {
   unrolled,
   within,
 } from "./mechanics.js";
-import { add, cached, mul, neg, sub } from "./runtime.js";
+import { add, cached, key, mul, neg, sub } from "./runtime.js";
 
 /** A function (y, p) => numbers in plain operators as code (y, p, out). */
 export const compiled = (function_, size, parameters) =>
@@ -136,15 +136,15 @@ export function reader(mode, size) {
   if (second) return readerOf(mode, size);
   if (!readersOfTops.has(top)) readersOfTops.set(top, new Map());
   const readers = readersOfTops.get(top);
-  const key = `${mode.form} ${size}`;
-  if (!readers.has(key)) readers.set(key, readerOf(mode, size));
-  return readers.get(key);
+  const place = key([mode.reading_key, size]);
+  if (!readers.has(place)) readers.set(place, readerOf(mode, size));
+  return readers.get(place);
 }
 
 function readerOf(mode, size) {
   const kinds = mode.tops.map((top) => top.kind);
   const numbers = contact_numbers(mode.tops);
-  const codes = codesOf(mode.form, kinds, size);
+  const codes = codesOf(mode.reading_key, kinds, size);
   const parameters = Float64Array.of(...numbers, 0);
   const last = numbers.length;
   const values = (of) => (y, p) => [...of(mode.on_tops(contacts_with(kinds, p)), y, p[last])];

@@ -339,7 +339,7 @@ const identities = new WeakMap();
 let identityCount = 0;
 
 /** A text that is the same for values that are equal. */
-function key(a) {
+export function key(a) {
   if (typeof a === "string") return JSON.stringify(a);
   if (a === null || (typeof a !== "object" && typeof a !== "function")) return String(a);
   if (Array.isArray(a)) return `(${a.map(key).join()})`;
