@@ -137,7 +137,10 @@ class Graph:
 
     def node(self, name: str, operands: tuple[Node, ...], value: float = 0.0) -> Node:
         """Return the node of this description, made if there is none."""
-        key = " ".join([name, f"{value:.17g}", *[str(operand.place) for operand in operands]])
+        # Nearly all operations have the value 0.0, and to write it would take half of the time.
+        key = f"{name} {value:.17g}" if value or not operands else name
+        for operand in operands:
+            key += f" {operand.place}"
         node = self._by_description.get(key)
         if node is None:
             node = Node(self, name, operands, value, len(self.nodes))
