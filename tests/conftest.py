@@ -19,6 +19,7 @@ from hypothesis import HealthCheck, settings
 from browsing import browser, visit
 from campaigns import examples, note_marks
 from children import RUN, end_leftovers, signals_heard
+from launches import end_processes
 from tippetop.export import bundle
 from tippetop.page_engine import HERE
 
@@ -61,6 +62,7 @@ def pytest_collection_finish() -> None:
 @pytest.hookimpl(wrapper=True)
 def pytest_sessionfinish(session: pytest.Session) -> Iterator[None]:
     """Fail if a test left a process behind, once pytest's workers have ended."""
+    end_processes()
     yield
     if hasattr(session.config, "workerinput"):
         return

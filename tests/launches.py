@@ -7,6 +7,7 @@ import math
 import subprocess
 import warnings
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -130,17 +131,36 @@ def in_javascript(
     launches: list[dict[str, Any]], *options: str, engine: Path = HERE
 ) -> Iterator[dict[str, Any]]:
     """What the engine makes of launches, in Node with some options."""
-    lines = "".join(json.dumps(launch) + "\n" for launch in launches)
+    process = _following(options, engine)
+    for launch in launches:
+        process.stdin.write(json.dumps(launch) + "\n")
+        process.stdin.flush()
+        answer = process.stdout.readline()
+        assert answer, "Node has ended"
+        yield json.loads(answer)
+
+
+@cache
+def _following(options: tuple[str, ...], engine: Path) -> Any:
+    """Return a process that follows one launch after another: to start takes longer than most."""
     follow = Path(__file__).with_name("follow.mjs")
-    ran = subprocess.run(
-        [NODE, *options, str(follow), str(engine / "index.js")],
-        input=lines,
-        capture_output=True,
-        text=True,
-        check=True,
+    command = [NODE, *options, str(follow), str(engine / "index.js")]
+    process = subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, encoding="utf-8"
     )
-    for line in ran.stdout.splitlines():
-        yield json.loads(line)
+    processes.append(process)
+    return process
+
+
+processes = list[Any]()
+"""The processes of Node that follow launches."""
+
+
+def end_processes() -> None:
+    """End the processes of Node that follow launches."""
+    _following.cache_clear()
+    while processes:
+        processes.pop().communicate()
 
 
 def compared(found: dict[str, Any], run: Any, beside: Any = None) -> list[str]:
