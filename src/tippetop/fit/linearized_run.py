@@ -22,7 +22,15 @@ from tippetop.contact.automaton import Automaton
 from tippetop.contact.block import Block
 from tippetop.contact.contact_mode import ContactMode
 from tippetop.contact.flight import LANDING, TOUCHING, Flight, is_level
-from tippetop.contact.guards import ENDING, ROLLING_STOPPING, STOPPING
+from tippetop.contact.guards import (
+    BRANCH,
+    ENDING,
+    LIMIT_BRANCH,
+    ROLLING_STOPPING,
+    SLIP_LARGE,
+    SLIP_SMALL,
+    STOPPING,
+)
 from tippetop.contact.mode import (
     COMPLETED,
     FAILURE,
@@ -36,6 +44,7 @@ from tippetop.contact.mode import (
     Transition,
 )
 from tippetop.contact.natural_launch import NaturalLaunch, automaton_of
+from tippetop.contact.slip_end_motion import OVERTAKEN, REOPENING
 from tippetop.contact.slip_onset import ONSET_OVER
 from tippetop.contact.surfaces import TOUCH
 from tippetop.contact.trajectory import Trajectory
@@ -90,6 +99,15 @@ end is found first: slip, 1e-5 then, has 11 digits, and what follows changes the
 what the slip's direction changes.
 """
 
+FOLLOWED_ON = (SLIP_SMALL, SLIP_LARGE, STOPPING, ONSET_OVER, REOPENING, OVERTAKEN)
+"""Causes of the end of a mode after which the same motion goes on, and is only followed in another
+way.
+"""
+
+OTHER_FORMULA = (BRANCH, LIMIT_BRANCH)
+"""Causes of the end of a mode after which the same motion goes on by another formula of the law.
+"""
+
 FOUR = ((-2, 1.0 / 12.0), (-1, -8.0 / 12.0), (1, 8.0 / 12.0), (2, -1.0 / 12.0))
 """Rule of fourth order for a first derivative: places and weights."""
 
@@ -98,10 +116,6 @@ OTHER_EVENTS = (
     " of sticking"
 )
 GRAZES = "the motion grazes: the guard that ends it hardly falls"
-LINGERS = (
-    "slip, or rolling, is about to end for long before it does, or does not: few digits of the"
-    " derivatives that follow are known"
-)
 UNSOLVED = "the variational equations cannot be followed"
 AT_BOUND = (
     "contact.restitution is at the end of its range, from 0 to 1: there is no run on the other side"
@@ -147,6 +161,22 @@ class Visit:
     def end_time(self) -> float:
         """When it ended."""
         return self.segments[-1].end_time
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether the same motion goes on after it."""
+        return goes_on(self.segments[-1].mode, self.end)
+
+    def joined(self, onwards: "Visit") -> "Visit":
+        """Return the visit with that of another mode in which the same motion goes on."""
+        return Visit(
+            self.mode,
+            self.time,
+            self.state,
+            self.segments + onwards.segments,
+            onwards.end,
+            onwards.transition,
+        )
 
 
 @dataclass
@@ -216,7 +246,19 @@ class Junction:
     transitions: list[Transition]
     """What follows the leg, or the launch, and each of the visits."""
     visits: list[Visit]
-    """The visits, one after each transition but the last."""
+    """The visits, one after each transition but the last. Those in which the same motion goes on
+    are one, in the mode in which it is entered: a run beside may follow it in other ways.
+    """
+
+    def add(self, visit: Visit) -> None:
+        """Add the next visit, and what follows it."""
+        if self.visits and self.visits[-1].goes_on:
+            self.visits[-1] = self.visits[-1].joined(visit)
+            self.transitions.pop()
+        else:
+            self.visits.append(visit)
+        if visit.transition is not None:
+            self.transitions.append(visit.transition)
 
 
 @dataclass
@@ -318,11 +360,9 @@ class LinearizedRun:
         while True:
             junction = Junction(before, [transition], [])
             while visits and not is_integrated(visits[0]):
-                visit = visits.pop(0)
-                junction.visits.append(visit)
-                if visit.transition is None:
+                junction.add(visits.pop(0))
+                if junction.visits[-1].transition is None:
                     break
-                junction.transitions.append(visit.transition)
             self.legs.append(junction)
             if not visits:
                 return
@@ -354,7 +394,7 @@ class LinearizedRun:
                 try:
                     for place, weight in FOUR:
                         beside = self.beside(junction, direction, place * change)
-                        mode_beside: Any = beside.transitions[-1].next
+                        mode_beside = self._mode(mode, self.directions[direction], place * change)
                         row = np.array(mode_beside.numbers(beside.state))
                         changes[direction] += weight / change * row
                         ahead[direction] += weight / change * (beside.time - visit.time)
@@ -442,13 +482,11 @@ class LinearizedRun:
             ]
             moment, tangents = moments[0][0], np.vstack([rows[1:] for rows in moments])
             slopes = np.array(motion.rates(moment.tolist(), parameters.tolist()))
-            _, earlier = self._guard_times(visit, (moment, tangents, slopes), carried)
+            _, earlier = self._durations(visit, (moment, tangents, slopes), carried, times)
             tangents = tangents + np.outer(earlier, slopes)
             _, last, final = self._followed(visit, carried, (near, moment, tangents))
         slopes = np.array(motion.rates(last.tolist(), parameters.tolist()))
-        guard, lasts = self._guard_times(visit, (last, final, slopes), carried)
-        if guard is None:
-            lasts = lasts - times
+        guard, lasts = self._durations(visit, (last, final, slopes), carried, times)
         total = final + np.outer(lasts, slopes)
         return IntegratedLeg(visit, solutions, (times, times + earlier + lasts), last, total, guard)
 
@@ -499,18 +537,29 @@ class LinearizedRun:
             return mode.with_tops(tops, mode.parameters[len(numbers) :])
         return replace(mode, top=tops[0])
 
-    def _guard_times(
-        self, visit: Visit, at: tuple[Array, Array, Array], carried: tuple[Array, Array]
+    def _durations(
+        self,
+        visit: Visit,
+        at: tuple[Array, Array, Array],
+        carried: tuple[Array, Array],
+        begins: Array,
     ) -> tuple[tuple[Guard, Array] | None, Array]:
-        """Return the guard that ends a visit, with its gradient over the square of that, and the
-        derivatives of the time that the visit lasts; or of the end of the run, without a guard.
+        """Return the guard whose fall ends a visit, with its gradient over the square of that, and
+        the derivatives of the time that the visit lasts.
+
+        There is no guard where the run ends, and where the same motion goes on under one law.
         """
         last, tangents, slopes = at
         count = len(tangents)
         mode: Any = visit.mode
+        if visit.goes_on and not (visit.end and visit.end.cause in OTHER_FORMULA):
+            # Any time would do, and the guard may hardly fall. At this one the run beside is
+            # nearest to the end of the visit, so that what comes soon comes there soon, too.
+            return None, -(tangents @ slopes) / (1.0 + slopes @ slopes)
         guard = guard_of(mode.motion.guards, visit.end)
         if guard is None:
-            return None, np.array([self._end_rate(one) for one in self.directions])
+            ends = [self._end_rate(one) for one in self.directions]
+            return None, np.array(ends) - begins
         changes, gradient = guard_slopes(guard, (last, tangents), carried)
         slope, steepest = float(gradient @ slopes), float(np.linalg.norm(gradient))
         times = np.zeros(count)
@@ -520,9 +569,8 @@ class LinearizedRun:
         if abs(slope) > least:
             times = -changes / slope
         else:
-            lingers = visit.end is not None and visit.end.cause in (STOPPING, ROLLING_STOPPING)
             for direction in range(count):
-                self.fail(direction, visit.end_time, LINGERS if lingers else GRAZES)
+                self.fail(direction, visit.end_time, GRAZES)
         return (guard, gradient / steepest**2), times
 
     def _end_rate(self, direction: StartNumbers) -> float:
@@ -567,20 +615,22 @@ class LinearizedRun:
                 time, transition = 0.0, automaton.launch(numbers.start)
             else:
                 time, transition = self._after_leg(automaton, junction.before, direction, change)
-            done = [same(transition, junction.transitions[0])]
+            if junction.before is None or not junction.before.visit.goes_on:
+                transition = same(transition, junction.transitions[0])
+            done = [transition]
             for visit, following in zip_longest(junction.visits, junction.transitions[1:]):
                 nominal = visit.end_time
-                some, how = self._visited(visit, automaton, (time, done[-1]), end)
+                some, mode, how = self._visited(visit, automaton, (time, done[-1]), end)
                 segments.append(some)
                 time = some[-1].end_time
                 if following is None or nominal >= until:
                     return Beside(done, segments, time, some[-1].end_state)
-                if how is None or visit.end is None or how.cause != visit.end.cause:
-                    raise Differs(OTHER_EVENTS)
-                require_impact(numbers, self.kind, following)
-                mode: Any = done[-1].next
-                transition = automaton.follow(mode, how, time)
-                done.append(same(transition, following))
+                if visit.goes_on:
+                    transition = replace(following, state=some[-1].end_state)
+                else:
+                    require_impact(numbers, self.kind, following)
+                    transition = same(automaton.follow(mode, how, time), following)
+                done.append(transition)
                 some[-1] = replace(some[-1], transition=transition)
         except (Differs, ArithmeticError, ValueError) as error:
             reason = str(error) if isinstance(error, Differs) else UNKNOWN
@@ -589,18 +639,25 @@ class LinearizedRun:
 
     def _visited(
         self, visit: Visit, automaton: Automaton, start: tuple[float, Transition], end: float
-    ) -> tuple[list[Segment], ModeEnd | None]:
-        """Return the segments of a visit beside the run, and how it ended."""
-        time, transition = start
-        mode: Any = transition.next
-        # The end of what begins is no event: it is followed for as long as in the run.
-        begins = visit.end is not None and visit.end.cause == ONSET_OVER
-        until = min(time + (visit.end_time - visit.time), end) if begins else end
-        some = list(mode.segments(time, transition.state, until, self.integrator))
-        if not begins:
-            return some, some[-1].mode_end
-        some += self._caught_up(mode, automaton, some[-1], until)
-        return some, ModeEnd(ONSET_OVER, some[-1].end_state)
+    ) -> tuple[list[Segment], Mode, ModeEnd]:
+        """Return the segments of a visit beside the run, its last mode, and how that ended.
+
+        Where the same motion goes on after the visit, it is followed for as long as in the run.
+        """
+        (time, transition), segments = start, list[Segment]()
+        until = min(time + (visit.end_time - visit.time), end) if visit.goes_on else end
+        while True:
+            mode: Any = transition.next
+            segments += mode.segments(time, transition.state, until, self.integrator)
+            time, how = segments[-1].end_time, segments[-1].mode_end
+            if how is None:
+                raise Differs(OTHER_EVENTS)
+            if not goes_on(mode, how) or time >= until:
+                break
+            transition = automaton.follow(mode, how, time)
+        if visit.goes_on and how.cause != COMPLETED and not goes_on(mode, how):
+            raise Differs(OTHER_EVENTS)
+        return segments, mode, how
 
     def _beside(self, direction: int, change: float, *, at_launch: bool) -> StartNumbers:
         """Return the numbers of a run beside the run, which are linear in the change.
@@ -623,24 +680,6 @@ class LinearizedRun:
         if key not in self._problems:
             self._problems[key] = self.fields[direction].beside(self.problem, change)
         return self._problems[key]
-
-    def _caught_up(
-        self, mode: Mode, automaton: Automaton, last: Segment, until: float
-    ) -> list[Segment]:
-        """Return what follows the end of what begins up to a time, where that comes later."""
-        assert last.mode_end is not None
-        if last.mode_end.cause == COMPLETED:
-            return []
-        if last.mode_end.cause != ONSET_OVER:
-            raise Differs(OTHER_EVENTS)
-        onwards = automaton.follow(mode, last.mode_end, last.end_time)
-        mode_after: Any = onwards.next
-        if not is_plainly_integrated(mode_after):
-            raise Differs(OTHER_EVENTS)
-        caught_up = list(mode_after.segments(last.end_time, onwards.state, until, self.integrator))
-        if caught_up[-1].mode_end is None or caught_up[-1].mode_end.cause != COMPLETED:
-            raise Differs(OTHER_EVENTS)
-        return caught_up
 
     def _after_leg(
         self, automaton: Automaton, leg: IntegratedLeg, direction: int, change: float
@@ -841,6 +880,18 @@ def is_integrated(visit: Visit) -> bool:
 def is_plainly_integrated(mode: object) -> bool:
     """Return whether a mode goes from its first step on as the equations of motion say."""
     return isinstance(mode, IntegratedMode) and type(mode).segments is IntegratedMode.segments
+
+
+def goes_on(mode: Mode, end: ModeEnd | None) -> bool:
+    """Return whether the same motion goes on after the end of a mode, so that a run beside the run
+    may go on in another mode there.
+
+    Rolling on one contact is only about to end where its guard falls; on two it ends there.
+    """
+    if end is None:
+        return False
+    is_about_to_end = end.cause == ROLLING_STOPPING and len(mode.tops) == 1
+    return is_about_to_end or end.cause in FOLLOWED_ON or end.cause in OTHER_FORMULA
 
 
 def guard_slopes(
