@@ -160,5 +160,5 @@ def test_searches_end_in_one_minimum_where_the_misfit_jumps(seed, jumps):
     variance = 1.0 if np.isfinite(ends[0].chi2) else float(ends[0].noise[0][0]) ** 2
     assert abs(ends[0].cost - ends[1].cost) < 0.1 * variance
     for fitted in ends:
-        assert any("jumps" in one for one in fitted.cautions) == jumps
+        assert any("jumps" in one for one in fitted.cautions) == jumps == bool(fitted.cautions)
         assert np.all(np.abs(scores_of(fitted, case.truth)) < 3.0)

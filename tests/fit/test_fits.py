@@ -12,6 +12,7 @@ import tippetop as tt
 from campaigns import among
 from tippetop.cli.commands import app
 from tippetop.fit.fit_result import known_together, search_of
+from tippetop.fit.joint_model import JointModel
 from tippetop.fit.model import Model
 from tippetop.fit.residual_statistics import (
     are_correlated,
@@ -481,6 +482,25 @@ def test_data_too_few_to_show_whether_the_model_fits_say_so(count, is_few):
     film = tt.Measurement.of_variables(times, {"tilt": tilt}, noise=0.01)
     cautions = tt.fit(TRUE, film, "friction.mu", starts=1).cautions
     assert any("too few to show whether the model fits" in one for one in cautions) is is_few
+
+
+def test_times_of_many_launches_show_whether_the_model_fits():
+    """Ten times that miss by more the later they are drift, in whatever order the launches are."""
+    random = np.random.default_rng(4)
+    times, scatter = random.permutation(np.linspace(2.0, 8.0, 10)), random.normal(0.0, 0.01, 10)
+    launches = [
+        Model(TRUE, [tt.Measurement.of_events({"turnover_time": time}, 0.01)], ["friction.mu"])
+        for time in times
+    ]
+    model = JointModel(launches, ["friction.mu"])
+    search = Search(model, np.full(10, 0.01), np.array([0.0]), np.array([np.inf]))
+    slopes = times[:, None]
+    for error, is_drift in ((scatter, False), (scatter + 0.02 * (times - 5.0), True)):
+        shown = times + error
+        (column,) = search.columns((shown - times) / 0.01, slopes)
+        assert np.allclose(column.residuals, (error / 0.01)[np.argsort(shown)])
+        assert column.is_correlated == is_drift
+        assert can_be_correlated(column.fitted)
 
 
 @pytest.mark.parametrize(("count", "numbers"), [(5, 1), (8, 4), (12, 8)])

@@ -296,17 +296,33 @@ class Search:
         return not any(one.is_correlated for one in self.columns(values, minimum.slopes))
 
     def columns(self, residuals: Array, jacobian: Array) -> list[ResidualColumn]:
-        """Return the residuals of each column of the data; the Jacobian is that of all of them."""
+        """Return the residuals of each column of the data; the Jacobian is that of all of them.
+
+        Single readings, such as times of events, are a column of all launches, in the order of what
+        the runs show.
+        """
         columns, fitted = list[ResidualColumn](), _directions(jacobian, len(residuals))
+        single = dict[str, list[int]]()
         values = (self.model.data / self.deviations)[self.measured]
+
+        def add(label: str, rows: Array) -> None:
+            small = is_negligible(residuals[rows], values[rows], self.is_noise_known)
+            columns.append(ResidualColumn(label, residuals[rows], small, fitted[rows]))
+
         places = np.where(self.measured, np.cumsum(self.measured) - 1, -1)
         ends = np.cumsum([one.values.size for one in self.model.measurements])[:-1]
         for one, part in zip(self.model.measurements, np.split(places, ends), strict=True):
             table = part.reshape(one.values.shape)
             for label, column in zip(one.observation.labels, table.T, strict=True):
                 rows = column[column >= 0]
-                small = is_negligible(residuals[rows], values[rows], self.is_noise_known)
-                columns.append(ResidualColumn(label, residuals[rows], small, fitted[rows]))
+                if len(column) == 1:
+                    single.setdefault(label, []).extend(rows)
+                else:
+                    add(label, rows)
+        for label, places_of in single.items():
+            rows = np.array(places_of, dtype=int)
+            shown = self.deviations[self.measured][rows] * (values[rows] + residuals[rows])
+            add(label, rows[np.argsort(shown, kind="stable")])
         return columns
 
     def slopes_over_interval(self, numbers: Array, place: int, variance: float) -> Array:
