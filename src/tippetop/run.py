@@ -34,6 +34,7 @@ from tippetop.results.run_metrics import RunMetrics
 from tippetop.results.run_solution import RunSolution
 from tippetop.results.sample_counts import DEFAULT_SAMPLES
 from tippetop.results.samples import event_in_si
+from tippetop.results.stiffness import stiffness_sentence
 from tippetop.support.errors import InvalidInput, require
 from tippetop.support.units import number_in
 from tippetop.support.validation import require_callback
@@ -187,7 +188,9 @@ def simulate(
     recorder = Recorder.of(start, grid / units.time)
     run_metrics = RunMetrics(start.top, start.state)
     segments = list[Segment]()
+    last: Sequence[Segment] = ()
     for block in search.blocks_of(trajectory):
+        last = block.segments
         recorder.take(block)
         run_metrics.take(block)
         if dense:
@@ -206,6 +209,7 @@ def simulate(
                 (
                     status.value,
                     trajectory.detail and f"Reason: {trajectory.detail.removesuffix('.')}.",
+                    stiffness_sentence(last, units) if status is Status.TOO_MANY_STEPS else "",
                     breach,
                     force_missing_at_rest(problem) if status in WITHOUT_A_STEP else "",
                     ambiguity_of(trajectory.events),

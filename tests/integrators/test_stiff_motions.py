@@ -1,6 +1,7 @@
 """Stiff motions: the implicit method of high order, and where it relieves the explicit one."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -265,3 +266,24 @@ def test_drilling_that_dies_on_a_small_patch_is_followed():
     # It loses little by drilling, and creeps little: nearly a top that rolls.
     rolls = tt.simulate(problem.replace({"friction": tt.CoulombFriction(mu=0.3)}), 1.0, samples=101)
     assert run["tilt"].values == pytest.approx(rolls["tilt"].values, abs=1e-3)
+
+
+def test_a_run_of_too_many_steps_names_the_time_in_which_friction_damps_slip():
+    """Slip of a top whose axis is steep changes by f (1 / m + h^2 / I1) under a friction force
+    f.
+    """
+    problem, mu = stiff(1e4), 1e4
+    run = tt.simulate(problem, 1.0, samples=2, integrator="taylor", step_limit=1000)
+    assert run.attrs["status"] == "too_many_steps"
+    named = re.search("friction damps slip within ([^ ]*) s", run.attrs["message"])
+    body = problem.body
+    height = problem.start().height
+    rate = mu * problem.gravity * (1.0 + body.mass * height**2 / body.I1)
+    assert float(named[1]) == pytest.approx(1.0 / rate, rel=0.05)
+
+
+def test_a_run_of_too_many_steps_of_what_is_not_stiff_names_none():
+    problem = stiff(0.3, **{"launch.spin": 1e5})
+    run = tt.simulate(problem, 1.0, samples=2, step_limit=1000)
+    assert run.attrs["status"] == "too_many_steps"
+    assert "Reason" not in run.attrs["message"]

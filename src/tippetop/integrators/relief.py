@@ -95,8 +95,17 @@ def is_stiff(
     """Return whether a motion is stiff in states, shape (n, size), about which it took steps, shape
     (n,).
     """
+    stiff: NDArray[np.bool_] = steps * fastest_damping(motion, parameters, states) > STIFF
+    return stiff
+
+
+def fastest_damping(motion: Motion, parameters: Sequence[Scalar], states: Array) -> Array:
+    """Return the largest rate at which a motion damps a disturbance of states, shape (n, size); 0
+    where its derivatives are not finite.
+    """
     slopes = RightHandSide(motion, parameters).linearized(states)[1]
     finite = np.all(np.isfinite(slopes), axis=(1, 2))
-    damping = -np.linalg.eigvals(np.where(finite[:, None, None], slopes, 0.0)).real.min(axis=1)
-    stiff: NDArray[np.bool_] = finite & (steps * damping > STIFF)
-    return stiff
+    damping: Array = -np.linalg.eigvals(np.where(finite[:, None, None], slopes, 0.0)).real.min(
+        axis=1
+    )
+    return damping
