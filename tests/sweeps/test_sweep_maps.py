@@ -38,7 +38,7 @@ def test_a_map_holds_every_cell(plane, name, tmp_path):
     assert "spin" in axes.get_xlabel()
     assert "μ" in axes.get_ylabel()
     if "flag_meanings" in plane[name].attrs:
-        labels = [label.get_text().replace("-", "_") for label in bar.get_yticklabels()]
+        labels = [label.get_text().replace(" ", "_") for label in bar.get_yticklabels()]
         assert labels == plane[name].attrs["flag_meanings"].split()
     if name in SAVED:
         save(figure, tmp_path / "map.png")
@@ -55,13 +55,27 @@ def test_what_is_not_computed_is_not_shown(plane):
 
 
 def test_cells_are_drawn_where_their_values_are(plane):
-    mesh = next(
-        child for child in phase_map(plane).axes[0].get_children() if isinstance(child, QuadMesh)
-    )
-    corners = mesh.get_coordinates()
-    spins, mus = plane["spin"].values, plane["mu"].values
-    assert np.all((corners[:, :-1, 0] < spins) & (spins < corners[:, 1:, 0]))
-    assert np.all((mus > corners[:-1, :, 1].T) & (mus < corners[1:, :, 1].T))
+    """Each value is in the middle of its cell, by eye, and nothing is drawn beyond the cells."""
+    mu = str(plane["final_tilt"].dims[1])
+    for drawn in (plane, plane.isel({mu: [2, 0, 3, 1]}), plane.isel({mu: [1]})):
+        axes = phase_map(drawn).axes[0]
+        mesh = next(child for child in axes.get_children() if isinstance(child, QuadMesh))
+        corners, in_order = mesh.get_coordinates(), drawn.sortby(mu)
+        pixels = axes.transData.transform(corners.reshape(-1, 2)).reshape(corners.shape)
+        centres = (pixels[:-1, :-1] + pixels[1:, 1:]) / 2
+        values = np.meshgrid(in_order["spin"].values, in_order["mu"].values)
+        expected = axes.transData.transform(np.stack(values, axis=-1).reshape(-1, 2))
+        np.testing.assert_allclose(centres.reshape(-1, 2), expected, atol=1e-6)
+        assert np.array_equal(mesh.get_array(), in_order["final_tilt"].values.T)
+        assert np.all(pixels[1:, 1:] > pixels[:-1, :-1] + 1.0)
+        assert axes.get_ylim() == pytest.approx((corners[0, 0, 1], corners[-1, 0, 1]))
+
+
+def test_an_axis_of_negative_numbers_is_drawn_with_even_steps(plane):
+    backwards = plane.assign_coords(mu=-plane["mu"])
+    axes = phase_map(backwards).axes[0]
+    assert axes.get_yscale() == "linear"
+    assert axes.get_ylim()[0] < -1.0 < -0.1 < axes.get_ylim()[1]
 
 
 def test_one_axis_is_a_curve_and_draws_are_points():

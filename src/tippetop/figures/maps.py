@@ -103,7 +103,7 @@ def phase_map(sweep: xr.Dataset, variable: str = "final_tilt") -> Figure:
     InvalidInput
         If the values of an axis are too far apart to be drawn.
     """
-    sweep = encoded(sweep)
+    sweep = _in_order(sweep)
     if variable not in SWEPT:
         raise not_one_of("variable", variable, list(SWEPT))
     values = sweep[variable]
@@ -123,7 +123,7 @@ def draw_map(axes: Axes, sweep: xr.Dataset, variable: str) -> None:
     InvalidInput
         If the sweep has no such variable, or more axes.
     """
-    sweep = encoded(sweep)
+    sweep = _in_order(sweep)
     if variable not in SWEPT:
         raise not_one_of("variable", variable, list(SWEPT))
     values, figure = sweep[variable], axes.get_figure(root=True)
@@ -155,12 +155,18 @@ def require_drawable(coordinates: Mapping[str, np.ndarray[Any, Any]]) -> None:
         if not np.issubdtype(values.dtype, np.number):
             continue
         with np.errstate(all="ignore"):
-            least, most = _ends(np.unique(values))
+            least, most = _edges(np.unique(values))[[0, -1]]
         if not most - least < WIDEST:
             ends = float(values.min()), float(values.max())
             raise InvalidInput(
                 name, ends, f"ends at most {WIDEST:g} apart", "reach too far to be drawn"
             )
+
+
+def _in_order(sweep: xr.Dataset) -> xr.Dataset:
+    """Return a sweep with words as numbers, and with the values of its axes in ascending order."""
+    dimensions = map(str, sweep["outcome"].dims)
+    return encoded(sweep).sortby([name for name in dimensions if name in sweep.coords])
 
 
 def _panels(sweep: xr.Dataset, variable: str) -> Figure:
@@ -203,21 +209,15 @@ def _colours(axes: Axes, sweep: xr.Dataset, variable: str, shade: dict[str, Any]
     values = _values(sweep, variable).T
     axes.set_facecolor(FAINT)
     axes.grid(visible=False)
-    image = axes.pcolormesh(
-        sweep[across].values,
-        sweep[up].values,
-        np.ma.masked_invalid(values),
-        shading="nearest",
-        rasterized=True,
-        **shade,
-    )
+    edges = [_edges(sweep[name].values) for name in (across, up)]
+    image = axes.pcolormesh(*edges, np.ma.masked_invalid(values), rasterized=True, **shade)
     _dot_moving(axes, sweep, variable, *np.meshgrid(sweep[across].values, sweep[up].values))
     for name, axis in ((across, axes.xaxis), (up, axes.yaxis)):
         axis.set_label_text(_name(sweep, name))
         if _is_logarithmic(sweep[name].values):
             (axes.set_xscale if axis is axes.xaxis else axes.set_yscale)("log")
-    axes.set_xlim(*_ends(sweep[across].values))
-    axes.set_ylim(*_ends(sweep[up].values))
+    axes.set_xlim(*edges[0][[0, -1]])
+    axes.set_ylim(*edges[1][[0, -1]])
     return image
 
 
@@ -228,7 +228,7 @@ def _curve(axes: Axes, sweep: xr.Dataset, variable: str) -> None:
     axes.set_xlabel(_name(sweep, across))
     if _is_logarithmic(sweep[across].values):
         axes.set_xscale("log")
-    axes.set_xlim(*_ends(sweep[across].values))
+    axes.set_xlim(*_edges(sweep[across].values)[[0, -1]])
     if variable == "final_tilt":
         pi_ticks(axes.yaxis)
 
@@ -336,7 +336,7 @@ def _bar(figure: Figure, axes: list[Axes], image: Any, sweep: xr.Dataset, variab
     bar.outline.set_visible(False)
     meanings = sweep[variable].attrs.get("flag_meanings")
     if meanings is not None:
-        names = meanings.replace("_", "-").split()
+        names = [name.replace("_", " ") for name in meanings.split()]
         bar.set_ticks(list(range(len(names))), labels=names)
     elif variable == "final_tilt":
         pi_ticks(bar.ax.yaxis)
@@ -344,19 +344,23 @@ def _bar(figure: Figure, axes: list[Axes], image: Any, sweep: xr.Dataset, variab
 
 def _is_logarithmic(values: np.ndarray[Any, Any]) -> bool:
     """Return whether the values grow by even ratios rather than by even steps."""
-    if len(values) < 3 or np.any(values[0] * values <= 0):
+    if len(values) < 3 or np.any(values <= 0):
         return False
-    steps, ratios = np.diff(values), np.diff(np.log(np.abs(values)))
+    steps, ratios = np.diff(values), np.diff(np.log(values))
     even = [float(np.abs(jumps).max() / np.abs(jumps).min()) for jumps in (ratios, steps)]
     return even[0] < MOST_STEP <= even[1]
 
 
-def _ends(values: np.ndarray[Any, Any]) -> tuple[float, float]:
-    """Return the outer ends of the first and of the last cell."""
+def _edges(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Return the edges of the cells at the values of an axis, one more than there are values.
+
+    Edges are halfway between values: at the geometric mean on a logarithmic axis.
+    """
     if len(values) == 1:
-        return float(values[0]) - 0.5, float(values[0]) + 0.5
+        return np.array([values[0] - 0.5, values[0] + 0.5])
     if _is_logarithmic(values):
-        first, last = (values[1] / values[0]) ** 0.5, (values[-1] / values[-2]) ** 0.5
-        return float(values[0] / first), float(values[-1] * last)
-    half = 0.5 * (values[1] - values[0]), 0.5 * (values[-1] - values[-2])
-    return float(values[0] - half[0]), float(values[-1] + half[1])
+        edges: np.ndarray[Any, Any] = np.exp(_edges(np.log(values)))
+        return edges
+    middles = 0.5 * values[:-1] + 0.5 * values[1:]
+    first, last = middles[0] - values[0], values[-1] - middles[-1]
+    return np.array([values[0] - first, *middles, values[-1] + last])
