@@ -73,11 +73,11 @@ def build_page(root: Path) -> None:
 
     Raises `node_tools.Failed` with the reason if one of these fails.
     """
-    # Builders may name the folder of what they have installed for the build in the variable, too.
-    searched = [str(root / "src"), *filter(None, [os.environ.get("PYTHONPATH")])]
-    source = {**os.environ, "PYTHONPATH": os.pathsep.join(searched), "TIPPETOP_CACHE": "off"}
+    # The package is found in the folder that the command runs in. From PYTHONPATH pip's isolated
+    # builds remove what is already installed, which the source is where it was installed before.
     translate = [sys.executable, "-m", "tippetop.page_engine"]
-    node_tools.run("translating the engine", translate, root, source)
+    environment = {**os.environ, "TIPPETOP_CACHE": "off"}
+    node_tools.run("translating the engine", translate, root / "src", environment)
     node_tools.bundle()
     (root / BUILT / REASON).unlink(missing_ok=True)
 

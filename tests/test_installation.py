@@ -127,6 +127,11 @@ def test_what_is_installed_for_the_build_is_found_by_the_translation(
     for folder in (needed, source):
         folder.mkdir(parents=True)
     (needed / "needed_for_the_build.py").touch()
+    # As pip's does with the source where it was installed before, by pip install --editable.
+    forget = (
+        f"import sys; sys.path = [path for path in sys.path if path != {str(source.parents[1])!r}]"
+    )
+    (needed / "sitecustomize.py").write_text(forget, encoding="utf-8")
     (source.parent / "__init__.py").touch()
     (source / "__init__.py").touch()
     made = tmp_path / "made"
