@@ -38,7 +38,8 @@ def section(workpiece: Workpiece) -> Figure:
     tall = (high - low + 2.0 * room) / (2.0 * reach + 2.0 * room)
     figure, axes = mark.panels(min(8.0, max(2.4, 0.62 * WIDTH * tall)))
     axes.set(xlim=(-reach - room, reach + room), ylim=(low - room, high + room), aspect="equal")
-    axes.set(xlabel="Distance from the axis (mm)", ylabel="Height (mm)")
+    # The layout reserves room for labels beside the box that equal scales have not yet narrowed.
+    axes.set(xlabel="Distance from the axis (mm)", ylabel="Height (mm)", anchor="W")
     axes.set_xticks([tick for tick in axes.get_xticks() if abs(tick) <= reach + room])
     axes.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")
     _cut(axes, workpiece.outline, BODY, 1.2)
