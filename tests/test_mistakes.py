@@ -136,7 +136,10 @@ OPTIONS = [
     ("simulate --integrator rk5", "--integrator: 'rk5' is not one of"),
     ("simulate --integrator rk4", "--step is missing (write a step size"),
     ("simulate --samples -3", "--samples: -3 is not a whole number"),
-    ("simulate --tolerance 0", "--tolerance: 0 is not a number from"),
+    ("simulate --tolerance 0", "--tolerance: 0 is not a number at least 2.2e-16 and less than 1"),
+    ("simulate --spin 1e400", "--spin: 1e400 is not a number (write a number nearer to 1)"),
+    ("simulate --duration 1e400", "--duration: 1e400 is not a number (write a number nearer to 1)"),
+    ("simulate --set =3", "--set: '=3' is not FIELD=VALUE"),
     ("simulate --preset reprot", "--preset: 'reprot' is not one of"),
     ("simulate --liftoff jump", "--liftoff: 'jump' is not one of fly, stop, ignore"),
     ("simulate --set spin", "--set: 'spin' is not FIELD=VALUE, such as launch.spin=155"),
@@ -155,17 +158,34 @@ OPTIONS = [
     ("sweep --over launch.tilt=0:90kg:3", "--over launch.tilt.from: 0 kg is a mass, not an angle"),
     ("sweep --over launch.spin=5rpm,5rpm", "--over launch.spin: [0.5235987755982988, 0.5235"),
     ("sweep --draw launch.spin=1:2 --count 3 --over friction.mu=1,2", "--draw: 'launch.spin=1:2'"),
+    ("sweep none.toml", "none.toml cannot be read"),
+    ("sweep .", ". cannot be read: Is a directory"),
+    ("sweep --over body=1,2", "body: what is swept is given for a field that is not a number"),
+    (
+        "sweep --over launch.slip=1,2",
+        "launch.slip: what is swept is given for a field that is not a number (write one of"
+        " launch.slip.0, launch.slip.1)",
+    ),
+    (
+        "sweep --draw friction.mu=norm:scale=-1 --count 3",
+        "--draw friction.mu: scale = -1 determine no distribution (write others: a scale",
+    ),
     ("sweep --count 3", "--count: 3 is only for --draw (omit it)"),
     ("sweep --over launch.spin=1:2:3 --duration 3m", "--duration: 3m is a length, not a time"),
     ("sweep --over launch.spin=1:2:3 --tolerance 0", "--tolerance: 0 is not a number"),
     ("sweep --over launch.spin=1:2:3 --most-events -3", "--most-events: -3 is not a whole"),
     ("sweep --over launch.spin=1:2:3 --workers 0", "--workers: 0 is not a whole number"),
     ("sweep --draw launch.spin=1:2 --count 3 --seed -1", "--seed: -1 is not a whole number"),
-    ("steady --at tilt=9", "tilt: 9 is not more than 0"),
+    ("steady --at tilt=9", "--at tilt: 9 is not more than 0"),
+    ("steady --at tilt=400deg", "--at tilt: 400deg is not more than 0 and less than pi rad"),
+    ("steady --at tilt=1 --at radius=-1cm", "--at radius: -1cm is not 0 or more, in m"),
+    ("steady --at tilt=1 --at rate=0", "--at spin is missing"),
+    ("steady --at tilt=1 --at radius=0.2", "friction: this law lets the contact slip, and a"),
     ("improve --preset friedl --goal far", "--goal: 'far' is not one of"),
     ("dataset --count 1 --out runs", "--out: 'runs' is not a file name that ends in .zarr"),
     ("engines --step -1", "--step: -1 is not a length from 1e-06 to"),
     ("dataset --count 0 --out a.zarr", "--count: 0 is not"),
+    ("dataset --workers 0 --out a.zarr", "--workers: 0 is not"),
     ("sweep --over launch.spin=1:2:3 --settled 1s", "--settled: 1s is a time, not an angle"),
 ]
 """Mistakes in options of the command line, and how the sentence begins."""
@@ -192,6 +212,8 @@ FIT_OPTIONS = [
     ("--vary friction.mu=2:1", "--vary friction.mu: 2 to 1 is not a range"),
     ("--vary friction.mu=2rad:1", "--vary friction.mu: 2rad is an angle"),
     ("--track two", "--track: 'two' is no track of this file"),
+    ("--frame-rate 60", "--frame-rate: 60 is only for a column of frames"),
+    ("--noise 1kg", "--noise: 1kg is a mass, not an angle (write it in rad or deg)"),
 ]
 """The same of the options of a fit to a file."""
 
@@ -210,6 +232,38 @@ def test_a_mistake_in_an_option_of_a_fit(
     said = at_the_command_line(monkeypatch, capsys, *command)
     assert said.startswith(begin)
     assert "None" not in said
+
+
+FILM_OPTIONS = [
+    ("--scale 0.1mm", "--scale: 0.0001 is the size of a pixel, and column x is in mm (leave it"),
+    ("--point nose", "--point: 'nose' is not 'tip', 'center'"),
+]
+"""The same of a film whose columns have units."""
+
+
+@pytest.mark.parametrize(("options", "begin"), FILM_OPTIONS)
+def test_a_mistake_in_an_option_of_a_film(
+    options: str,
+    begin: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Any,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "film.csv").write_text("t,x (mm),y (mm)\n0,1,1\n0.1,2,1\n0.2,3,1\n")
+    command = ["fit", "film.csv", "--vary", "friction.mu", "--view", "above", *options.split()]
+    assert at_the_command_line(monkeypatch, capsys, *command).startswith(begin)
+
+
+def test_a_column_without_numbers_is_refused_without_warnings(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Any
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "film.csv").write_text("t,tilt\n0,nan\n0.1,nan\n0.2,nan\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        said = at_the_command_line(monkeypatch, capsys, "fit", "film.csv", "--vary", "friction.mu")
+    assert said == "tilt in film.csv: 0 numbers is not at least two"
 
 
 def test_a_column_with_the_name_of_an_option_stays_one(

@@ -99,7 +99,7 @@ def test_problems_are_as_stated_and_do_not_depend_on_their_number():
 
 def test_misuse_is_a_sentence_and_nothing_is_written_over(tmp_path):
     words = ["dataset", "--out", str(tmp_path / "top.zarr"), "--count", "1", "--duration", "0.1"]
-    words += ["--samples", "2", "--processes", "1"]
+    words += ["--samples", "2", "--workers", "1"]
     done = CliRunner().invoke(app, words)
     assert done.exit_code == 0, done.output
     before = files_of(tmp_path)

@@ -134,7 +134,8 @@ def test_every_number_of_a_problem_can_be_swept():
 def test_points_of_a_picture_are_no_numbers_to_sweep():
     problem = report_problem().model_copy(update={"body": WOODEN})
     assert isinstance(problem.body.profile[0], tuple)
-    with pytest.raises(InvalidInput, match=r"body\.profile\.0: what is swept is given for an"):
+    refused = r"body\.profile\.0: what is swept is given for a field that is not a number"
+    with pytest.raises(InvalidInput, match=refused):
         cells_of(problem, {"body.profile.0": np.array([1.0])})
 
 

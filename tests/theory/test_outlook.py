@@ -310,4 +310,4 @@ def test_the_command_tells_programs_the_same():
 def test_the_command_refuses_in_a_sentence_what_the_theory_cannot_tell():
     result = CliRunner().invoke(app, ["critical", "--spin", "1e100"])
     assert isinstance(result.exception, InvalidInput)
-    assert "launch.spin" in str(result.exception)
+    assert "--spin: 1e+100" in str(result.exception)

@@ -321,9 +321,14 @@ def _radius_above(summary: dict[str, Any]) -> bool:
     return bool(upper.get("radius", 0.0) > lower.get("radius", 0.0))
 
 
+def _millimetres(length: float) -> str:
+    """Return a length in mm; what is below a nanometre is the rounding of larger lengths."""
+    return f"{round(1e3 * length, 6) + 0.0:.7g}"
+
+
 def _surface_row(one: dict[str, Any]) -> tuple[str, ...]:
     lengths = (
-        "" if one.get(name) is None else f"{1e3 * one[name]:.6g}"
+        "" if one.get(name) is None else _millimetres(one[name])
         for name in ("radius", "tube", "along", "center")
     )
     return (one["kind"], *lengths, f"{one['from_tilt']:.6g}", f"{one['to_tilt']:.6g}")
@@ -334,7 +339,7 @@ def _rows(summary: dict[str, Any]) -> list[tuple[str, str, str]]:
         ("mass", f"{summary['mass']:.7g}", "kg"),
         (
             "height of the centre of mass, as in the profile",
-            f"{1e3 * summary['center']:.7g}",
+            _millimetres(summary["center"]),
             "mm",
         ),
         ("I1, transverse to the axis", f"{summary['I1']:.7g}", "kg m²"),

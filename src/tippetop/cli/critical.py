@@ -100,6 +100,8 @@ RESISTED = (
     "Rolling resistance stops an axis that moves slowly, and takes energy from every precession:"
     " there are no critical spins. Without it there are: try --set rolling_resistance=0."
 )
+WITHIN_A_NUTATION = ("comes within 0.01 rad of there", "in its first nutation", "")
+"""Row of a launch that friction need not bring to its end."""
 FLAT = (
     "This body lies flat when its axis is vertical: it has no vertical spin. `tippetop steady`"
     " shows the circles in which it rolls."
@@ -124,7 +126,7 @@ def _sentences(outlook: "Outlook") -> Iterator[Any]:
             f"[dim]Critical spins are of launches with this one's tilt, {outlook.tilt:.6g} rad, and"
             " rates.[/]"
         )
-    if outlook.arrival_time is not None:
+    if outlook.arrival_time:
         yield (
             "[dim]The last row is the limit of μ t over μ. It is far off for strong friction, or if"
             " a nutation takes the axis round the vertical just once.[/]"
@@ -173,11 +175,14 @@ def _rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
         what = "drilling lets it stand" if vertical else "inverted with this λ it would stand"
         rows.append((what, spelled(outlook.standing_time), "s"))
     if outlook.mu_arrival_time is not None:
-        rows.append(
-            ("μ t until 0.01 rad from there, μ → 0", spelled(outlook.mu_arrival_time), "s²/m")
+        limit = (
+            "μ t until 0.01 rad from there, μ → 0",
+            spelled(outlook.mu_arrival_time, 4),
+            "s²/m",
         )
-    if outlook.arrival_time is not None:
-        rows.append(("so at this friction about", spelled(outlook.arrival_time), "s"))
+        rows.append(limit if outlook.mu_arrival_time > 0.0 else WITHIN_A_NUTATION)
+    if outlook.arrival_time:
+        rows.append(("so at this friction about", spelled(outlook.arrival_time, 4), "s"))
     return rows
 
 

@@ -19,7 +19,7 @@ def dataset(
         str, typer.Option(metavar=NUMBER, help="Length of every run, s, or as in '4 s'.")
     ] = "4",
     samples: Annotated[int, number_option(int, "Number of equal times of the states.")] = 200,
-    processes: Annotated[
+    workers: Annotated[
         int | None, number_option(int, "Number of processes; by default all processors.")
     ] = None,
     force: Force = False,
@@ -42,7 +42,7 @@ def dataset(
             duration=seconds,
             samples=samples,
             overwrite=force,
-            workers=processes,
+            workers=workers,
             progress=progress,
         )
     card = place.with_suffix(".md")

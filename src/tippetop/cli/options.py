@@ -225,17 +225,21 @@ def write_figure(figure: "Figure", path: Path, force: bool) -> None:
 def _parsed(change: str) -> tuple[str, Any]:
     """Return field and value of `--set FIELD=VALUE`."""
     field, equals, value = change.partition("=")
-    if not equals:
+    if not (field and equals):
         raise InvalidInput("--set", change, "FIELD=VALUE, such as launch.spin=155")
     return field, stated_value(value)
 
 
 def stated_value(text: str) -> Any:
-    """Return the value of a text: a number or list as in JSON, else the text itself."""
+    """Return the value of a text: a number or list as in JSON, else the text itself.
+
+    A number beyond the largest float stays a text too, so that its refusal shows it as typed.
+    """
     try:
-        return json.loads(text)
+        value = json.loads(text)
     except (ValueError, RecursionError):
         return text
+    return text if isinstance(value, float) and not is_number(value) else value
 
 
 def number_option(kind: type[int] | type[float], text: str) -> Any:

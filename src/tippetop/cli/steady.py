@@ -7,7 +7,7 @@ import typer
 
 from tippetop.cli.options import Choice, Json, of_a_problem
 from tippetop.cli.terminal import facts, listing, show, show_json, spelled
-from tippetop.support.errors import InvalidInput
+from tippetop.support.errors import InvalidInput, renamed
 
 if TYPE_CHECKING:
     from tippetop.problem.problem import Problem
@@ -27,6 +27,10 @@ At = Annotated[
     ),
 ]
 NAMES = ("tilt", "rate", "radius", "spin")
+NONE_OF_THE_LAUNCH = (
+    "No steady motion is known that this launch ends in. Numbers state others, as in"
+    " --at tilt=45deg --at radius=20cm."
+)
 
 
 @of_a_problem
@@ -35,7 +39,12 @@ def steady(choice: Choice, at: At = None, as_json: Json = False) -> None:
     from tippetop.theory.outlook import steady_states  # noqa: PLC0415 - slow to import
 
     problem = choice.problem()
-    states = steady_states(problem, **_numbers(at or []))
+    try:
+        states = steady_states(problem, **_numbers(at or []))
+    except InvalidInput as error:
+        if error.field in NAMES:
+            raise renamed(error, f"--at {error.field}") from None
+        raise
     judged = [(state, _spectrum(problem, state)) for state in states]
     straight = _straight(problem)
     if as_json:
@@ -58,7 +67,7 @@ def steady(choice: Choice, at: At = None, as_json: Json = False) -> None:
             " oscillation.[/]"
         )
     else:
-        show("No motion with these numbers is steady.")
+        show("No motion with these numbers is steady." if at else NONE_OF_THE_LAUNCH)
     if straight is not None:
         name = "rolls straight on its edge above"
         show(facts([(name, spelled(straight, 6), "rad/s" if math.isfinite(straight) else "")]))

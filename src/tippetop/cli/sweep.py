@@ -213,13 +213,14 @@ def _chosen_fields(
     base = Sweep.read(file) if file is not None and _holds_sweep(file) else stored
     stated = {name: limit for name, limit in limits.items() if limit is not None}
     if base is None:
+        problem = choice.problem()
         if not {"over", "draw"} & set(grid):
             raise InvalidInput(
                 "--over",
                 MISSING,
                 "a field, such as --over launch.spin=0:250:51, or --draw, or a sweep's file",
             )
-        return {"problem": choice.problem(), **grid, **stated}
+        return {"problem": problem, **grid, **stated}
     fields = base.to_fields() | {"problem": choice.changed(base.problem)}
     if "samples" in stated:
         fields.pop("times", None)
@@ -406,7 +407,7 @@ def _sentences(summary: dict[str, Any]) -> Iterator[Any]:
     rows = [(name.replace("_", " "), f"{number:,}") for name, number in summary["outcomes"].items()]
     if summary["flights"]:
         rows.append(("flights", f"{summary['flights']:,}"))
-    yield f"[bold]{summary['cells']:,} launches[/]"
+    yield f"[bold]{summary['cells']:,} launch{'' if summary['cells'] == 1 else 'es'}[/]"
     yield facts(rows)
     if summary["refusal"]:
         yield escape(f"The first launch that is not valid: {summary['refusal']}")

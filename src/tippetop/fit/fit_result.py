@@ -223,7 +223,7 @@ class FitResult:
         """How well the run fits the data, in words."""
         if self._search.is_noise_known:
             return f"chi² = {self.chi2:.4g} for {self.degrees_of_freedom} degrees of freedom"
-        unit = self.measurements[0].observation.units[0]
+        unit = written_unit(self.measurements[0].observation.units[0])
         size = f"{float(self.noise[0][0]):.3g} {unit}".strip()
         return f"the noise was not stated: estimated from the residuals, {size}"
 

@@ -403,6 +403,9 @@ def _measurement_of(
             )
         metres = _is_length(named["x"].unit) and _is_length(named["y"].unit)
         units = "m" if metres else "px"
+        if metres and scale is not None:
+            fault = f"is the size of a pixel, and column x is in {named['x'].unit}"
+            raise InvalidInput("scale", scale, "", fault, "leave it out")
         x, y = (column(name, units) for name in ("x", "y"))
         return Measurement.of_point(
             times[since],
@@ -434,8 +437,8 @@ def _launch_in(times: Array, start: Any) -> float:
     """Return the time of the launch in the data."""
     if start is not None:
         return float(number_in("start", start, "s"))
-    steps = np.diff(times)
-    apart = float(np.nanmedian(steps)) if len(steps) else 0.0
+    steps = np.diff(times[np.isfinite(times)])
+    apart = float(np.median(steps)) if len(steps) else 0.0
     if len(times) and times[0] > LATE_START * apart > 0.0:
         first = f"{times[0]:.4g}"
         fault = f"is not stated, and the data begin at {first} s"
@@ -447,9 +450,12 @@ def _launch_in(times: Array, start: Any) -> float:
 def _times(named: Mapping[str, DataColumn], frame_rate: Any) -> Array:
     """Return the times of the rows, s."""
     if "t" in named:
+        if frame_rate is not None:
+            fault = "is only for a column of frames, and this file has column t"
+            raise InvalidInput("frame_rate", frame_rate, "", fault, "leave it out")
         times = _in_unit(named["t"], "s")
-        if not named["t"].unit and len(times) and np.nanmax(times) > LONGEST_FILM:
-            longest = f"{np.nanmax(times):.6g}"
+        if not named["t"].unit and _largest(times) > LONGEST_FILM:
+            longest = f"{_largest(times):.6g}"
             fault = "is more than an hour, and the column has no unit"
             hint = "write the unit into the header, such as t (ms)"
             raise InvalidInput("t", longest, "", fault, hint)
@@ -478,16 +484,16 @@ def _events(named: Mapping[str, DataColumn], noise: Any) -> Measurement:
     return Measurement.of_events(dict(zip(names, times.tolist(), strict=True)), noises)
 
 
+def _largest(numbers: Array) -> float:
+    """Return the largest size of the numbers of a column, 0 without any."""
+    return float(np.max(np.abs(numbers[np.isfinite(numbers)]), initial=0.0))
+
+
 def _in_unit(column: DataColumn, units: str) -> Array:
     """Return the numbers of a column in a unit; pixels as they are."""
     numbers = column.numbers()
-    if (
-        not column.unit
-        and units == "rad"
-        and len(numbers)
-        and np.nanmax(np.abs(numbers)) > MORE_THAN_A_TURN
-    ):
-        largest = f"{np.nanmax(np.abs(numbers)):.4g}"
+    if not column.unit and units == "rad" and _largest(numbers) > MORE_THAN_A_TURN:
+        largest = f"{_largest(numbers):.4g}"
         fault = "is more than a turn in rad, and the column has no unit"
         hint = f"write the unit into the header: {column.name} (deg) or {column.name} (rad)"
         raise InvalidInput(column.name, largest, "", fault, hint)
@@ -531,7 +537,12 @@ def _noise_in(noise: Any, column: DataColumn, units: str) -> float:
     if not (is_number(value) and value > 0.0):
         accepted = f"a number greater than 0 in the unit of column {column.name}"
         raise InvalidInput("noise", noise, f"{accepted}, or with a unit, such as '0.3 mm'")
-    return float(value) * _factor(column, units)
+    try:
+        return float(value) * _factor(column, units)
+    except InvalidInput as error:
+        if value is noise:  # The unit is the column's.
+            raise
+        raise InvalidInput("noise", noise, "", error.fault, error.hint) from None
 
 
 def _is_length(unit: str) -> bool:

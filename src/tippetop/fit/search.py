@@ -701,17 +701,18 @@ class Search:
         first = np.clip(start[free] / sizes, low, high)
         if not np.isfinite(residuals_of(first)).all():
             return Minimum(start, np.inf, False, "the run does not show the data")
-        result: OptimizeResult = least_squares(
-            residuals_of,
-            first,
-            jacobian_of,
-            bounds=(low, high),
-            x_scale="jac",
-            ftol=tolerance,
-            xtol=tolerance,
-            gtol=None,
-            max_nfev=steps,
-        )
+        with np.errstate(all="ignore"):  # SciPy divides by slopes, which may be zero.
+            result: OptimizeResult = least_squares(
+                residuals_of,
+                first,
+                jacobian_of,
+                bounds=(low, high),
+                x_scale="jac",
+                ftol=tolerance,
+                xtol=tolerance,
+                gtol=None,
+                max_nfev=steps,
+            )
         data = int(self.measured.sum())
         values, slopes = result.fun[:data], result.jac[:data]
         inside = (result.active_mask == 0) & (np.abs(slopes).max(axis=0) > 0.0)

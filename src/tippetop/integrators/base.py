@@ -147,4 +147,5 @@ def require_tolerance(tolerance: Any, name: str) -> None:
     """
     least = TOLERANCES["taylor"] if name == "taylor" else LEAST_TOLERANCE
     if not (is_number(tolerance) and least <= tolerance < 1):
-        raise InvalidInput("tolerance", tolerance, f"a number from {least:.2g} to 1 with {name}")
+        accepted = f"a number at least {least:.2g} and less than 1 with {name}"
+        raise InvalidInput("tolerance", tolerance, accepted)

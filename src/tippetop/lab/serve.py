@@ -67,7 +67,7 @@ def serve(host: str, port: int, browser: bool, announce: Callable[[str], None]) 
             f"{host}:{port}",
             "the address of a free port of this machine",
             f"cannot be served at ({error})",
-            "choose another --port",
+            "choose another --port, or for --host an address of this machine, such as 127.0.0.1",
         ) from None
     name = _own_address() if host in ALL_INTERFACES else host
     address = f"http://{name}:{server.server_port}/"

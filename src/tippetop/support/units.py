@@ -363,6 +363,8 @@ def number_hint(text: str, units: str = "") -> str:
         return ""
     shown = "" if units in ("", "1") else f' or with its unit, "{text} {written(units)}"'
     if re.fullmatch(rf"[+-]?{DIGITS}(?:[eE][+-]?\d+)?", text):
+        if not is_number(float(text)):
+            return "write a number nearer to 1"
         return f"write {text} without quotes{',' * bool(shown)}{shown}"
     if match := re.fullmatch(r"([+-]?)(\d[\d.,' _]*)(?<![ ])(.*)", text):
         sign, number, ending = match.groups()

@@ -80,6 +80,19 @@ class Cells:
         return makers
 
 
+def _not_swept(problem: Problem, field: str, numeric: list[str]) -> InvalidInput:
+    """Return the refusal of a swept field that does not exist, or is not a number."""
+    swept = Described("what is swept")
+    try:
+        problem.get(field)
+    except InvalidInput:
+        return unknown_field(field, swept, numeric, PLACES)
+    inside = [name for name in numeric if name.startswith(f"{field}.")]
+    beside = [name for name in numeric if name.startswith(f"{field.rpartition('.')[0]}.")]
+    accepted = f"one of {', '.join(inside or beside or numeric)}"
+    return InvalidInput(field, swept, accepted, "is given for a field that is not a number")
+
+
 def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
     """Return the cells that put these values, each of shape (n,), into a problem.
 
@@ -88,7 +101,7 @@ def cells_of(problem: Problem, values: Mapping[str, Array]) -> Cells:
     numeric = dict(numeric_fields(problem))
     for field in values:
         if field not in numeric:
-            raise unknown_field(field, Described("what is swept"), list(numeric), PLACES)
+            raise _not_swept(problem, field, list(numeric))
     if problem.launch.velocity is not None and any(
         field.startswith("launch.slip.") for field in values
     ):

@@ -147,7 +147,8 @@ class DrawnColumn(Column):
                 raise InvalidInput(name, MISSING, f"a shape parameter of {self.distribution}")
         if not np.isfinite(self._quantiles(np.array([0.5]))).all():
             written = ", ".join(f"{name} = {value:g}" for name, value in self.parameters.items())
-            raise InvalidInput("", Described(written), "parameters that the distribution has")
+            fault, hint = "determine no distribution", "write others: a scale is above 0"
+            raise InvalidInput("", Described(written), "", fault, hint)
         return self
 
     @model_serializer

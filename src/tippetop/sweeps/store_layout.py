@@ -237,9 +237,13 @@ def refuse_another(path: Path, stored: Sweep, sweep: Sweep) -> None:
     if difference is not None:
         name, old, new = difference
         raise FileTrouble(
-            f"{path} holds another sweep and cannot be resumed: {name} is {short(old)} in it, and"
-            f" {short(new)} here; choose {OTHER_OUT}, or start afresh with {OVERWRITE}"
+            f"{path} holds another sweep and cannot be resumed: {name} is {_stated(old)} in it,"
+            f" and {_stated(new)} here; choose {OTHER_OUT}, or start afresh with {OVERWRITE}"
         )
+
+
+def _stated(value: Any) -> str:
+    return "not stated" if value is None else short(value)
 
 
 def first_difference(a: Any, b: Any, name: str = "") -> tuple[str, Any, Any] | None:

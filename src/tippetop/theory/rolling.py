@@ -150,9 +150,9 @@ def _checked(numbers: dict[str, Any]) -> dict[str, float]:
             raise InvalidInput(name, value, "a finite number")
         asked[name] = float(number)
     if not 0.0 < asked.get("tilt", 1.0) < math.pi:
-        raise InvalidInput("tilt", asked["tilt"], "more than 0 and less than pi rad")
+        raise InvalidInput("tilt", numbers["tilt"], "more than 0 and less than pi rad")
     if asked.get("radius", 0.0) < 0.0:
-        raise InvalidInput("radius", asked["radius"], "0 or more, in m")
+        raise InvalidInput("radius", numbers["radius"], "0 or more, in m")
     if asked.get("radius") == math.inf:
         if asked.get("rate", 0.0) != 0.0:
             raise InvalidInput(
@@ -340,8 +340,9 @@ def _held(states: list[SteadyState[float]], top: Top) -> list[SteadyState[float]
             raise InvalidInput(
                 "friction",
                 Described("this law"),
-                "dry friction of a point: a circle needs a force without slip, of"
-                f" {least:.4g} of the weight",
+                "dry friction of a point",
+                f"lets the contact slip, and a circle needs a force of {least:.4g} of the weight"
+                " without slip",
             )
         raise InvalidInput(
             "friction", Described("this law"), f"one that holds {least:.4g} of the weight"
