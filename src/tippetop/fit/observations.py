@@ -6,6 +6,7 @@ instrument that are fitted beside those of the problem, such as the direction of
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal, Protocol
 
 import numpy as np
@@ -155,9 +156,7 @@ class Camera:
         if self.point == "center":
             return center
         if isinstance(self.point, str):
-            problem = Problem.from_json(run.attrs["problem"])
-            tip = float(outer_height(top_of(problem).surface, -1.0))
-            end: Array = center + tip * run["axis"].values
+            end: Array = center + tip_height(run.attrs["problem"]) * run["axis"].values
             return end
         radius, along = self.point
         angle = numbers["mark.angle"]
@@ -168,6 +167,15 @@ class Camera:
         turned = arm + 2.0 * (w[:, None] * half + np.cross(vector, half))
         position: Array = center + turned
         return position
+
+
+@lru_cache(maxsize=1)
+def tip_height(problem: str) -> float:
+    """Return how far the tip of a body is from its centre of mass, m, from a problem's JSON text.
+
+    A search asks again for each number of the camera.
+    """
+    return float(outer_height(top_of(Problem.from_json(problem)).surface, -1.0))
 
 
 @dataclass(frozen=True)
