@@ -17,9 +17,16 @@ def published_normal_force(y: Sequence[Scalar], top: Top, functions: Functions) 
     """Normal force g_n of equation (2.15), N, for y = (theta, theta', phi, phi', omega3, v_x,
     v_y).
     """
-    tilt, tilt_rate, _, precession, spin, slip_x, _ = y
-    m, I1, I3, R, alpha, mu, g = published_parameters(top)
-    s, c = functions.sin(tilt), functions.cos(tilt)
+    parameters = published_parameters(top)
+    return _normal_force(y, parameters, functions.sin(y[0]), functions.cos(y[0]))
+
+
+def _normal_force(
+    y: Sequence[Scalar], parameters: Sequence[Scalar], s: Scalar, c: Scalar
+) -> Scalar:
+    """Return the normal force from the parameters, and the sine and cosine of the tilt."""
+    _, tilt_rate, _, precession, spin, slip_x, _ = y
+    m, I1, I3, R, alpha, mu, g = parameters
     swinging = I1 * c * (precession**2 * s**2 + tilt_rate**2) - I3 * precession * spin * s**2
     friction = m * R**2 * alpha * s * (1.0 - alpha * c) * mu * slip_x
     return (m * g * I1 + m * R * alpha * swinging) / (I1 + m * R**2 * alpha**2 * s**2 - friction)
@@ -58,9 +65,10 @@ def published_rates(
     if wrap is not None:
         y = (y[0] % wrap, *y[1:])
     tilt, tilt_rate, _, precession, spin, slip_x, slip_y = y
-    m, I1, I3, R, alpha, mu, _ = published_parameters(top)
+    parameters = published_parameters(top)
+    m, I1, I3, R, alpha, mu, _ = parameters
     s, c = functions.sin(tilt), functions.cos(tilt)
-    normal = published_normal_force(y, top, functions)
+    normal = _normal_force(y, parameters, s, c)
     if unilateral and normal < 0:
         normal = 0.0
     friction_x, friction_y = mu * normal * slip_x, mu * normal * slip_y
@@ -114,7 +122,8 @@ def published_parameters(top: Top) -> tuple[Scalar, ...]:
     TypeError
         If the top is not an eccentric sphere with viscous friction.
     """
-    if not (isinstance(top.surface, SphereSurface) and isinstance(top.friction, ViscousLaw)):
+    surface, friction = top.surface, top.friction
+    if not (isinstance(surface, SphereSurface) and isinstance(friction, ViscousLaw)):
         raise TypeError(
             "the published equations hold for an eccentric sphere with viscous friction only"
         )
@@ -122,8 +131,8 @@ def published_parameters(top: Top) -> tuple[Scalar, ...]:
         top.mass,
         top.transverse_inertia,
         top.axial_inertia,
-        top.surface.radius,
-        top.surface.center / top.surface.radius,
-        top.friction.mu,
+        surface.radius,
+        surface.center / surface.radius,
+        friction.mu,
         top.gravity,
     )
