@@ -91,19 +91,41 @@ def one_name_of_each_room():
     return sorted(dict(rooms).values())
 
 
-def test_a_name_of_each_room_can_be_imported_first():
-    """In whatever order names are asked for, what they need is loaded."""
-    assert len(one_name_of_each_room()) > 10
-    in_new_process(
-        AFRESH
-        + f"""
-for name in {one_name_of_each_room()}:
-    value = afresh(f"from tippetop import {{name}}")[name]
+EACH_FIRST = """
+for name in NAMES:
+    value = afresh(f"from tippetop import {name}")[name]
     assert value is not None
     assert value is getattr(sys.modules["tippetop"], name)
     home = getattr(value, "__module__", "tippetop")
     assert home.startswith("tippetop"), (name, home)
 """
+
+ALL_AT_ONCE = """
+from tippetop import *
+assert set(ALL) <= set(dir()), set(ALL) - set(dir())
+import pkgutil
+from contextlib import suppress
+from importlib import import_module
+from types import ModuleType
+import tippetop
+before = {name: getattr(tippetop, name) for name in ALL}
+for module in pkgutil.walk_packages(tippetop.__path__, "tippetop."):
+    with suppress(ImportError):  # of what is optional
+        import_module(module.name)
+for name, value in before.items():
+    assert getattr(tippetop, name) is value, name
+    assert name in ("presets", "extend") or not isinstance(value, ModuleType), name
+"""
+
+
+def test_names_can_be_imported_in_any_order_and_no_module_hides_one():
+    """Each room's name first, and then all at once. A module that is imported becomes an attribute
+    of its package: none may be called as a public name. One process loads the libraries once.
+    """
+    names = one_name_of_each_room()
+    assert len(names) > 10
+    in_new_process(
+        f"{AFRESH}\nNAMES = {names}\n{EACH_FIRST}\nafresh({f'ALL = {tt.__all__}{ALL_AT_ONCE}'!r})"
     )
 
 
@@ -128,28 +150,6 @@ def test_unknown_name_is_an_attribute_error_that_names_it():
         tt.simulation  # noqa: B018
     with pytest.raises(ImportError):
         from tippetop import simulation  # noqa: F401, PLC0415
-
-
-def test_all_names_can_be_imported_at_once_and_no_module_hides_one():
-    """A module that is imported becomes an attribute of its package: none may be called as a public
-    name.
-    """
-    in_new_process(f"""
-from tippetop import *
-assert set({tt.__all__}) <= set(dir()), set({tt.__all__}) - set(dir())
-import pkgutil
-from contextlib import suppress
-from importlib import import_module
-from types import ModuleType
-import tippetop
-before = {{name: getattr(tippetop, name) for name in {tt.__all__}}}
-for module in pkgutil.walk_packages(tippetop.__path__, "tippetop."):
-    with suppress(ImportError):  # of what is optional
-        import_module(module.name)
-for name, value in before.items():
-    assert getattr(tippetop, name) is value, name
-    assert name in ("presets", "extend") or not isinstance(value, ModuleType), name
-""")
 
 
 def test_errors_are_what_their_kind_suggests():
