@@ -139,6 +139,11 @@ def test_what_is_no_number_is_refused_as_everything_else(command: str, sentence:
     assert str(done.exception) == sentence
 
 
+def test_paragraphs_of_the_help_are_wrapped_by_the_terminal() -> None:
+    for command in get_command(app).commands.values():
+        assert all(paragraph.count("\n") == 0 for paragraph in command.help.split("\n\n"))
+
+
 def test_the_help_offers_the_integrators_that_there_are() -> None:
     command = get_command(app).commands["simulate"]
     (option,) = [one for one in command.params if "--integrator" in one.opts]

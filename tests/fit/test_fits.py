@@ -64,6 +64,9 @@ def test_a_film_of_the_tip_gives_friction_and_spin(film):
     assert fitted.cautions == ()
     low, high = fitted.interval("friction.mu", 0.95)
     assert high - low == pytest.approx(2 * 1.959964 * fitted.errors["friction.mu"], rel=1e-6)
+    units = {"friction.mu": "s/m", "launch.spin": "rad/s", "camera.angle": "rad"}
+    assert fitted.units == units | {"camera.x": "px", "camera.y": "px"}
+    assert all(line.endswith(" s/m") for line in str(fitted).splitlines()[:1])
 
 
 def test_derivatives_are_those_of_the_drop():

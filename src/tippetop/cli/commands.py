@@ -4,6 +4,8 @@ import os
 import re
 import sys
 import warnings
+from collections.abc import Callable
+from inspect import cleandoc
 from typing import Annotated, Any, TextIO
 
 import typer
@@ -132,6 +134,12 @@ def _in_a_sentence(error: Any) -> Exception:
     return help_text
 
 
+def _help(command: Callable[..., None]) -> str:
+    """Return the help text of a command: its docstring, each paragraph in one line."""
+    paragraphs = cleandoc(command.__doc__ or "").split("\n\n")
+    return "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
+
+
 app = typer.Typer(
     cls=Commands,
     no_args_is_help=True,
@@ -153,7 +161,7 @@ for command in (
     engines,
     dataset,
 ):
-    app.command(cls=Command)(command)
+    app.command(cls=Command, help=_help(command))(command)
 
 
 def _print_version(asked: bool) -> None:

@@ -118,14 +118,15 @@ def fit(
 
 def _lines(result: "FitResult") -> list[Any]:
     """Return the fit as tables and sentences."""
+    units = result.units
     rows = [
-        (name, f"{value:.5g}", "±", f"{result.errors[name]:.2g}")
+        (name, f"{value:.5g}", "±", f"{result.errors[name]:.2g}", units[name])
         for name, value in result.values.items()
     ]
     words = [f"[bold]not determined:[/] {direction}" for direction in result.undetermined]
-    headings = ("number", "value", "", "standard error")
+    headings = ("number", "value", "", "standard error", "unit")
     return [
-        listing(None, headings, rows, words=("number", "")),
+        listing(None, headings, rows, words=("number", "", "unit")),
         result.goodness,
         *words,
         *result.cautions,

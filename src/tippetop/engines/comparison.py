@@ -376,7 +376,7 @@ def dropped(results: Mapping[str, Mapping[str, Any]]) -> list[str]:
     sentences = []
     for result in results.values():
         for row in [*result["rows"], *result.get("left_out", ())]:
-            why = f"failed: {row['failure']}" if "failure" in row else row.get("reason")
+            why = f"failed: {row['failure'].rstrip('.')}" if "failure" in row else row.get("reason")
             if why:
                 step = f"{1e3 * row['asked_step']:g} ms"
                 sentences.append(

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from tippetop.figures.style import CONVERGED, INK, MUTED, WIDTH, ShownFigure, house_style
 from tippetop.fit.fit_result import FitResult
 from tippetop.integrators.base import Array
+from tippetop.results.catalogue import written_unit
 from tippetop.support.suggestions import not_one_of
 
 
@@ -28,7 +29,8 @@ class FittedColumn(NamedTuple):
         """Draw the data and the fitted run into a panel."""
         axes.plot(self.times, self.values, ".", color=MUTED, label="data")
         axes.plot(self.times, self.predicted, color=CONVERGED, linewidth=1.1, label="fit")
-        axes.set_title(f"{self.label} ({self.unit})" if self.unit else self.label)
+        unit = "" if self.unit in ("", "1") else f" ({written_unit(self.unit)})"
+        axes.set_title(f"{self.label}{unit}")
 
 
 def columns_of(fit: FitResult, name: str | None = None) -> list[FittedColumn]:

@@ -10,6 +10,7 @@ import xarray as xr
 from scipy.stats import norm, t
 
 from tippetop.fit.measurement import Measurement
+from tippetop.fit.observations import Camera
 from tippetop.fit.residual_statistics import (
     FEWEST_RESIDUALS,
     MOST_ABOVE,
@@ -211,20 +212,27 @@ class FitResult:
 
     def __str__(self) -> str:
         """Return the fit in lines for people."""
+        units = self.units
         lines = [
-            f"{name} = {value:.5g} ± {self.errors[name]:.2g}" for name, value in self.values.items()
+            f"{name} = {value:.5g} ± {self.errors[name]:.2g} {units[name]}".rstrip()
+            for name, value in self.values.items()
         ]
         lines.append(self.goodness)
         lines += [f"not determined: {direction}" for direction in self.undetermined]
         return "\n".join([*lines, *self.cautions])
 
     @property
+    def units(self) -> dict[str, str]:
+        """Units of the fitted numbers as people write them, by name; "" of pure numbers."""
+        return dict(zip(self.values, _units(self._search, self.problem), strict=True))
+
+    @property
     def goodness(self) -> str:
         """How well the run fits the data, in words."""
         if self._search.is_noise_known:
             return f"chi² = {self.chi2:.4g} for {self.degrees_of_freedom} degrees of freedom"
-        unit = written_unit(self.measurements[0].observation.units[0])
-        size = f"{float(self.noise[0][0]):.3g} {unit}".strip()
+        unit = _for_people(self.measurements[0].observation.units[0])
+        size = f"{float(self.noise[0][0]):.3g} {unit}".rstrip()
         return f"the noise was not stated: estimated from the residuals, {size}"
 
     @property
@@ -308,7 +316,7 @@ def result_of(search: Search, best: Minimum, rivals: Sequence[Minimum]) -> FitRe
         undetermined,
         (
             *_cautions(search, best, columns, degrees, near),
-            *known_together(names, numbers, covariance, _units(search, numbers)),
+            *known_together(names, numbers, covariance, _units(search, model.problem_of(numbers))),
         ),
         tuple(dict(zip(names, rival.numbers.tolist(), strict=True)) for rival in near),
         search.runs,
@@ -503,14 +511,28 @@ def _pattern(column: ResidualColumn) -> str:
     return f"{pattern} (Durbin-Watson {ratio:.2f}, where {mean:.2f} is expected)"
 
 
-def _units(search: Search, numbers: Array) -> list[str]:
-    """Return the units of the fitted numbers for people; empty for those of the instruments."""
-    problem, words = search.model.problem_of(numbers), list[str]()
+def _units(search: Search, problem: Problem) -> list[str]:
+    """Return the units of the fitted numbers of a problem and of the instruments, for people."""
+    pictures = {
+        one.observation.unit
+        for one in search.model.measurements
+        if isinstance(one.observation, Camera)
+    }
+    picture = pictures.pop() if len(pictures) == 1 else "unit of the picture"
+    units = list[str]()
     for name in search.model.names:
-        field = name.split(".", 1)[1] if name[0].isdigit() else name  # of one launch of several
-        units = problem.quantity(field).units if name in search.model.fields else ""
-        words.append(written_unit(units) if units not in ("", "1") else "")
-    return words
+        field = name.lstrip("0123456789.")  # of one launch or instrument of several
+        if name in search.model.fields:
+            units.append(_for_people(problem.quantity(field).units))
+        elif field.endswith("angle"):
+            units.append("rad")
+        else:
+            units.append(f"m/{picture}" if field.endswith("scale") else picture)
+    return units
+
+
+def _for_people(units: str) -> str:
+    return "" if units in ("", "1") else written_unit(units)
 
 
 def known_together(
