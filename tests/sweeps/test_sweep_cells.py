@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from campaigns import examples
 from strategies import problems
 from tippetop.mechanics.top import natural_state, natural_units
+from tippetop.problem.frictions import ContensouFriction
 from tippetop.problem.presets import REPORT_THIN_STEM, WOODEN, report_problem
 from tippetop.problem.problem import top_of
 from tippetop.results.catalogue import Fault, Outcome
@@ -164,3 +165,13 @@ def test_rolling_that_overflows_is_an_outcome():
     outcomes = compute(Sweep(problem, Product.of(axes), 0.1))["outcome"].values
     assert outcomes[0, 0] != Outcome.FAILED
     assert set(outcomes[1]) <= {Outcome.FAILED, Outcome.INVALID}
+
+
+def test_whether_there_is_a_contact_force_is_told_by_the_branch_of_the_law_at_launch():
+    """On drilling's branch friction at this slip would be a thousand times the normal force."""
+    patch = ContensouFriction(mu=0.3, patch_radius=1e-3, pressure="hertz")
+    changes = {"friction": patch, "contact.liftoff": "stop"}
+    slipping = report_problem(tilt=1.0, spin=10.0).replace(changes)
+    slips = np.array([-1.0, 1e-3, 1.0])
+    cells = cells_of(slipping, {"launch.slip.0": slips})
+    assert np.all(cells.fault == Fault.NONE)

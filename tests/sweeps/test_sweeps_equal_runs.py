@@ -312,6 +312,15 @@ ROWS |= {
     )
     for liftoff in ("stop", "ignore", "fly")
 }
+ROWS["branches of hertz, changed in the step in which the top turns over"] = Row(
+    report(
+        {"friction": HERTZ, "contact.liftoff": "ignore", "launch.precession": 100.0},
+        tilt=1.57,
+        spin=0.0,
+    ).replace({"launch.tilt_rate": 10.0}),
+    {"launch.slip.0": [0.105, 0.106]},
+    0.005,
+)
 ROWS |= {
     f"own {part}": Row(
         problem,

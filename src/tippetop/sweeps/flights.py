@@ -43,7 +43,7 @@ from tippetop.sweeps.flight_steps import (
     flight_steps,
 )
 from tippetop.sweeps.lane_sums import NO_SUMS, LaneSums
-from tippetop.sweeps.launch_arrays import Flags, Indices
+from tippetop.sweeps.launch_arrays import Flags, Indices, branched
 from tippetop.sweeps.taylor_step import is_singular
 from tippetop.sweeps.taylor_stepper import NumPyArithmetic
 from tippetop.sweeps.trajectory_samples import TrajectorySamples
@@ -174,8 +174,7 @@ def look_closer(
 
 def slides(state: State, top: Top) -> Flags:
     """Return whether tops in contact, whose contact point is at rest vertically, go on sliding."""
-    sliding = along_table(state)
-    touch = sliding_contact(sliding.axis, sliding.momentum, sliding.velocity, top)
+    touch = sliding_contact(*along_table(state), branched(top, state))
     flags: Flags = (touch.delassus > 0.0) & (touch.free_acceleration < 0.0)
     return flags
 
@@ -185,7 +184,7 @@ def rolls(state: State, top: Top) -> Flags:
     count = np.ones(len(np.atleast_1d(state.height)), dtype=bool)
     if not top.resists_rolling:
         return count
-    y = along_table(state)
+    y, top = along_table(state), branched(top, state)
     lasting = rolling_stopping_guard(y, sliding_rates(y, top), top) > 0.0
     flags: Flags = count & is_rolling(y.axis, y.momentum, top) & lasting
     return flags
@@ -199,7 +198,7 @@ def slips(state: State, top: Top, *, far: bool = False) -> Flags:
     count = np.ones(len(np.atleast_1d(state.height)), dtype=bool)
     if not is_set_valued(top.friction):
         return count
-    y = along_table(state)
+    y, top = along_table(state), branched(top, state)
     lasting = ContactMode(top).contacts(y.pack()).slip_left() > 0.0
     flags: Flags = count & is_slipping(*y, top) & lasting
     return flags & ~is_near(y, top) if far else flags

@@ -24,7 +24,7 @@ from tippetop.results.metrics import STATUSES
 from tippetop.sweeps.flights import fly_all, rolls, slides, slips
 from tippetop.sweeps.impacts import collide
 from tippetop.sweeps.lane_arrays import HELD_BY_LANES, Slots
-from tippetop.sweeps.launch_arrays import Indices, branched, picked, single
+from tippetop.sweeps.launch_arrays import Indices, picked, single
 from tippetop.sweeps.single_launches import follow
 from tippetop.sweeps.trajectory_samples import SampledLaunch
 
@@ -147,7 +147,7 @@ class LaneTransitions:
         """Collide with the table; return the lanes that fly again, as `_fly` takes them."""
         slots = self.slots
         cells, launches = slots.cell[lanes], slots.launches
-        top = branched(launches.tops(cells), state)
+        top = launches.tops(cells)
         after, struck, rebounds, impulse = collide(state, top, launches.restitution[cells])
         struck &= ~np.asarray(lands_flat(top, state.axis)) & slips(after, top, far=True)
         rebounds &= struck
