@@ -1,6 +1,7 @@
 """A run is held against what every motion keeps."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,11 @@ from tippetop.mechanics.state import State
 from tippetop.mechanics.top import natural, natural_state, natural_units
 from tippetop.mechanics.vectors import length
 from tippetop.problem.problem import top_of
+from tippetop.results.accumulation import before_launch
 from tippetop.results.accuracy_monitor import Monitor
+from tippetop.results.metrics import STATUSES
+from tippetop.sweeps.cells import cells_of
+from tippetop.sweeps.ensemble import judge
 
 PROBLEM = tt.presets.report_problem()
 STEMMED = PROBLEM.replace({"body": tt.presets.REPORT_STEM})
@@ -197,6 +202,33 @@ def test_many_launches_are_held_against_what_each_keeps() -> None:
         jellett[0, :2] += off
         monitor.check(size, *others, jellett, np.zeros((1, 3)))
         assert monitor.is_trusted(1e-9).tolist() == [True, not off, not off]
+
+
+@pytest.mark.parametrize("liftoff", ["fly", "ignore"])
+def test_launches_of_a_sweep_are_called_inaccurate_for_what_they_do_not_keep(liftoff: str) -> None:
+    """By their last states and least forces; an end that is no number breaches nothing where the
+    launch failed, and makes any other inaccurate.
+    """
+    problem = PROBLEM.replace({"contact.liftoff": liftoff})
+    cells = cells_of(problem, {"launch.spin": np.full(8, 155.0)})
+    launches = cells.launches(np.arange(8), 1.0)
+    start = [np.array(numbers) for numbers in np.broadcast_arrays(*launches.state.pack())]
+    axis, momentum, height = start[:3], start[3:6], start[9]
+    names = ["COMPLETED"] * 6 + ["FAILED", "TOO_MANY_STEPS"]
+    ends = before_launch(8)
+    ends.status[:] = [STATUSES.index(tt.Status[name]) for name in names]
+    ends.least_force[:] = 1.0
+    height[1] -= 1e-3
+    ends.least_force[2] = -1e-3
+    axis[2][3] += 1e-3
+    momentum[2][4] *= 1.0 + 1e-3
+    height[5], height[6] = np.nan, np.nan
+    axis[2][7] += 1e-3
+    judge(replace(ends, state=State.unpack(start)), launches, 1e-9)
+    told = [STATUSES[status].name for status in ends.status]
+    pulled = "COMPLETED" if liftoff == "ignore" else "INACCURATE"
+    assert told[:3] == ["COMPLETED", "INACCURATE", pulled]
+    assert told[3:] == ["INACCURATE"] * 3 + ["FAILED", "INACCURATE"]
 
 
 def test_the_end_of_a_run_is_seen() -> None:
