@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 
 from tippetop.mechanics.laws.friction import ViscousLaw
 from tippetop.mechanics.state import State
+from tippetop.mechanics.surfaces.hull import Hull
 from tippetop.mechanics.surfaces.surface import RingSurface, SphereSurface, SpheroidSurface
 from tippetop.mechanics.top import Top
 
@@ -32,6 +33,9 @@ def reach(shape, tilt):
             return radius - center * cosine
         case SpheroidSurface(across, along, center):
             return np.hypot(across * sine, along * cosine) - center * cosine
+        case Hull(units, sizes):
+            pairs = zip(units, sizes, strict=True)
+            return np.max([size * reach(unit, tilt) for unit, size in pairs], axis=0)
 
 
 class Tumbling(NamedTuple):

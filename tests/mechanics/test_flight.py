@@ -27,7 +27,13 @@ from tippetop.mechanics.motion import (
     point_velocity,
 )
 from tippetop.mechanics.state import State
-from tippetop.mechanics.surfaces.surface import SphereSurface, SpheroidSurface, contact_vector
+from tippetop.mechanics.surfaces.hull import Hull
+from tippetop.mechanics.surfaces.surface import (
+    RingSurface,
+    SphereSurface,
+    SpheroidSurface,
+    contact_vector,
+)
 from tippetop.mechanics.top import Top
 from tippetop.mechanics.vectors import dot, length, scale
 from tippetop.mechanics.view import Angles, state_from_angles
@@ -586,3 +592,17 @@ def test_flights_of_many_turns_end_at_their_first_touch(shape, turns):
     gaps = gap(fly(spinning, summit + np.linspace(-1.0, 1.0, 30_001) * period, top, np), top)
     highest = highest_gap(spinning, top, time)
     assert gaps.max() - lost <= highest <= gaps.max() + 3e-7 * top.surface.size + lost
+
+
+def test_the_highest_gap_of_a_body_of_many_edges_is_over_the_face_that_is_cut_deepest():
+    """In a step it passes four faces between its edges, over each of which the gap is highest; the
+    first is cut deepest.
+    """
+    angles, radii = 1.0 + 0.11 * np.arange(5), 0.02 * np.array([0.998, 0.999, 1.0, 1.0, 1.0])
+    edges = zip(radii * np.sin(angles), -radii * np.cos(angles), strict=True)
+    body = Hull.of(tuple(RingSurface(radius, center) for radius, center in edges))
+    flight, duration = Tumbling(body, 1.02, 300.0, 0.05, 0.0, 0.3), 0.4 / 300.0
+    highest = flight.gap(np.linspace(0.0, duration, 40_001)).max()
+    assert flight.gap(np.linspace(0.5 * duration, duration, 40_001)).max() < highest - 1e-5
+    top, state = flight.thrown
+    assert highest_gap(state, top, duration) == pytest.approx(highest, abs=1e-8)
