@@ -203,3 +203,13 @@ def test_every_consistent_answer_is_reported(seed: int) -> None:
             and np.allclose(name.normal, found.normal, rtol=1e-7, atol=1e-9)
         ]
         assert len(alike) == 1, (found, names)
+
+
+def test_a_contact_may_stick_slip_or_open():
+    """Friction jams the body: each of the three answers of its second contact is consistent."""
+    case = drawn(1160)
+    told = reported(case)
+    for answer in told:
+        check(case, answer)
+    ends = [(answer.closed, sticks_of(case, answer)) for answer in told]
+    assert ends == [((1,), (True,)), ((1,), (False,)), ((), ())]
