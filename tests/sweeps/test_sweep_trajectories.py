@@ -8,11 +8,16 @@ import xarray as xr
 from sweep_cases import lively, stored
 
 import tippetop as tt
+from tippetop.mechanics.motion import along_table, sliding_contact
+from tippetop.mechanics.natural_units import Units
 from tippetop.problem.presets import report_problem
 from tippetop.results.samples import OF_INSTANTS
 from tippetop.support.errors import InvalidInput
 from tippetop.sweeps import Store, Sweep, compute, fill, read_sweep
+from tippetop.sweeps.cells import cells_of, spread
 from tippetop.sweeps.contents import CONTENTS
+from tippetop.sweeps.lane_sums import LaneSums
+from tippetop.sweeps.trajectory_samples import TrajectorySamples
 
 EVERY = tuple(OF_INSTANTS)
 
@@ -133,3 +138,33 @@ def test_what_cannot_be_kept_is_refused(options, sentence):
         launches = {"draw": {"launch.spin": {"from": 1, "to": 2}}}
     with pytest.raises(InvalidInput, match=sentence):
         tt.sweep(report_problem(), **launches, duration=1.0, workers=1, **options)
+
+
+def test_samples_that_are_due_when_launches_end_are_of_their_last_states():
+    """Of one that slides, one in the air, and one that is about to lift off."""
+    fast = np.array([0.0, 0.0, 1.0])
+    rates = {"launch.precession": 200.0 * fast, "launch.spin": 50.0 + 250.0 * fast}
+    cells = cells_of(report_problem(tilt=1.0), rates)
+    launches, times = cells.launches(np.arange(3), 1.0), np.array([0.0, 0.5, 1.0])
+    kept = {name: np.zeros((3, 3)) for name in ("normal_force", "height", "x")}
+    sums = LaneSums.of(launches.kind, kept)
+    units = Units(*(spread(unit, 3) for unit in cells.units))
+    samples = TrajectorySamples(launches, units, times, kept, np.arange(3), np.zeros(3), sums)
+    rise = np.array([0.0, 0.1, 0.0])
+    ended = launches.state._replace(height=launches.state.height + rise)
+    carried = np.arange(3.0) + np.zeros((sums.count, 1))
+    samples.take_last(np.arange(3), ended, 0.5 / units.time, carried)
+    samples.finish()
+    assert np.array_equal(samples.is_sampled, np.tile([True, True, False], (3, 1)))
+    touch = sliding_contact(*along_table(launches.state), launches.top)
+    force = np.array([touch.normal_force[0], 0.0, 0.0]) * cells.units.energy / cells.units.length
+    assert touch.normal_force[0] > 0.1
+    assert touch.normal_force[2] < 0.0
+    heights = np.broadcast_to(ended.height, 3) * cells.units.length
+    for name, expected in (
+        ("normal_force", force),
+        ("height", heights),
+        ("x", np.arange(3.0) * cells.units.length),
+    ):
+        shown = np.column_stack([expected, expected, np.full(3, np.nan)])
+        assert kept[name] == pytest.approx(shown, rel=1e-12, nan_ok=True), name
