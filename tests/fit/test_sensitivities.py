@@ -13,7 +13,7 @@ from tippetop.contact.trajectory import Trajectory
 from tippetop.fit.dual import Dual, duals, parts_of
 from tippetop.fit.linearized_run import IntegratedLeg, LinearizedRun
 from tippetop.fit.problem_numbers import Direction
-from tippetop.fit.variable_slopes import differences
+from tippetop.fit.variable_slopes import Slopes, differences
 from tippetop.fit.variational import followed
 from tippetop.graph.derivatives import derivatives
 from tippetop.graph.recording import record
@@ -183,6 +183,48 @@ def test_a_top_that_jumps_without_loss():
     little = problem.replace({"friction.mu": 1e-6})
     found = tt.sensitivities(little, 0.05, ["friction.mu"], samples=5)["energy_lost"].item()
     assert found == pytest.approx(1e6 * float(tt.simulate(little, 0.05)["energy_lost"]), rel=1e-4)
+
+
+def test_a_derivative_that_is_zero_is_zero_however_rounding_has_grown():
+    """An egg jumps without friction. Spins of either sign tilt it alike: without spin the
+    derivatives of all that a mirror leaves as it is are zero, and rounding of them grows tenfold
+    with every jump.
+    """
+    problem = tt.Problem(
+        body=tt.Body(mass=0.05, shape=tt.Spheroid(across=0.02, along=0.03), I1=1.3e-5, I3=8e-6),
+        friction=tt.ViscousFriction(mu=0.0),
+        launch=tt.Launch(tilt=0.7, spin=0.0, gap=0.01),
+        contact=tt.Contact(liftoff="fly", restitution=1.0),
+    )
+    slopes = tt.sensitivities(problem, 0.65, "launch.spin", samples=3)
+    assert slopes["reason"].item() == ""
+    # A spin of 1 rad/s changes them by less than half of their sixth digit.
+    for name, size in (("tilt", 1.0), ("tilt_rate", 10.0), ("height", 0.03), ("event_time", 0.1)):
+        assert np.all(np.abs(slopes[name].values) < 5e-7 * size)
+    # The spin itself is no more than what it was.
+    np.testing.assert_allclose(slopes["spin"].values, 1.0, rtol=CLOSED)
+
+
+def test_only_what_two_distances_find_within_rounding_is_zero():
+    def slopes(*values):
+        return Slopes(np.array(values), np.zeros(len(values)), 0.0, None, is_settled=True)
+
+    once, twice = slopes(2.0, 40.0, 2.0, 2.0), slopes(-2.0, 2.0, 40.0, 2.0)
+    rounding = slopes(1.0, 0.0, 0.0, 0.0)
+    # It has grown to 1, and may be 30 times that.
+    assert once.zeros_beside(twice, rounding, 30.0).tolist() == [True, False, False, True]
+    assert not once.zeros_beside(twice, rounding, 29.0).any()
+    assert once.zeros_beside(slopes(2.0), rounding, 30.0).tolist() == [True, False, False, False]
+
+
+def test_a_derivative_that_the_check_lacks_is_not_known():
+    def slopes(*values):
+        return Slopes(np.array(values), np.zeros(len(values)), 0.0, None, is_settled=True)
+
+    known = slopes(1.0, 2.0, 3.0, 4.0).known_beside(slopes(1.1, 3.0, np.nan), 0.5)
+    np.testing.assert_array_equal(known, [1.0, np.nan, np.nan, np.nan])
+    longer = slopes(1.0).known_beside(slopes(1.1, 3.0), 0.5)
+    np.testing.assert_array_equal(longer, [1.0])
 
 
 def test_the_time_of_a_guard_that_nearly_grazes_goes_as_a_square_root():

@@ -111,6 +111,9 @@ OTHER_FORMULA = (BRANCH, LIMIT_BRANCH)
 FOUR = ((-2, 1.0 / 12.0), (-1, -8.0 / 12.0), (1, 8.0 / 12.0), (2, -1.0 / 12.0))
 """Rule of fourth order for a first derivative: places and weights."""
 
+RULE_ROUNDING = 1.5 * np.finfo(float).eps
+"""Rounding of a number of size 1 in the rule, times the distance: the sum of its weights."""
+
 OTHER_EVENTS = (
     "runs nearby go through other events: a choice of the contact is at its edge, or at the limit"
     " of sticking"
@@ -285,6 +288,9 @@ class LinearizedRun:
         Tolerance of the integrator, if it is not its own.
     distance
         How far beside the run its junctions are followed, in natural units.
+    rounding_of
+        The same run and one of its directions, where derivatives are to be what rounding of the
+        differences at its junctions makes of those: the one direction here moves no number.
 
     Attributes
     ----------
@@ -303,7 +309,9 @@ class LinearizedRun:
         *,
         tolerance: float | None = None,
         distance: float = BESIDE,
+        rounding_of: "tuple[LinearizedRun, int] | None" = None,
     ) -> None:
+        self.rounding_of, self.chance = rounding_of, np.random.default_rng(0)
         self.problem, self.duration, self.grid = problem, duration, grid
         self.distance, self.is_differenced = distance, False
         self.fields = tuple(directions)
@@ -405,12 +413,27 @@ class LinearizedRun:
                     change *= SHORTER
             else:
                 self.fail(direction, error.time, str(error))
+        if self.rounding_of is not None:
+            rounding = self._rounding_at(visit, *self.rounding_of)
+            changes[0] += rounding[:-1]
+            ahead[0] += rounding[-1]
         leg = junction.before
         if leg is not None and not junction.visits:
             # The axis does not jump: where two surfaces strike in turns, ever sooner, rounding of
             # the rule in its derivative would grow as fast as the time between them shrinks.
             changes[:, :3], ahead = leg.changes[:, :3], leg.times[1]
         return ahead, self._touching(visit, changes)
+
+    def _rounding_at(self, visit: Visit, run: "LinearizedRun", direction: int) -> Array:
+        """Return what rounding makes of the differences of the numbers, and of the time, with which
+        a leg of the same run begins; the signs are by chance.
+        """
+        mode: Any = visit.mode
+        junction = run.legs[len(self.legs) - 1]
+        assert isinstance(junction, Junction)
+        sizes = np.maximum(1.0, np.abs([*mode.numbers(visit.state), visit.time]))
+        signs = self.chance.choice([-1.0, 1.0], len(sizes))
+        return np.asarray(signs * sizes * RULE_ROUNDING / run._change(junction, direction))
 
     def _touching(self, visit: Visit, changes: Array) -> Array:
         """Return the derivatives of the numbers with which a leg begins, where its gaps that are

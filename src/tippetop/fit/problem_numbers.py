@@ -1,7 +1,7 @@
 """The numbers that a run starts from, and their derivatives with respect to fields of a problem."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -136,8 +136,18 @@ class Direction:
         slopes = derivatives(problem, field)
         return cls(field, scale, StartNumbers.unpack(scale * slopes.pack(), len(slopes.top)))
 
+    def without_motion(self) -> "Direction":
+        """Return the direction of a field by the same scale along which no number moves."""
+        row = np.zeros_like(self.rates.pack())
+        return replace(self, rates=StartNumbers.unpack(row, len(self.rates.top)))
+
     def beside(self, problem: Problem, change: float) -> Problem | None:
-        """Return the problem after a change of the field; None where there is no such problem."""
+        """Return the problem after a change of the field; None where there is no such problem.
+
+        Where no number moves it is the problem itself.
+        """
+        if not self.rates.pack().any():
+            return problem
         value = float(problem.get(self.field)) + change * self.scale
         try:
             return problem.replace({self.field: value})

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from tippetop.contact.trajectory import require_limits
 from tippetop.fit.linearized_run import BESIDE, LinearizedRun, RunReading
 from tippetop.fit.problem_numbers import Direction, natural_size, require_fields
-from tippetop.fit.variable_slopes import DIGITS, NIL, Slopes, size_of, slopes_of
+from tippetop.fit.variable_slopes import DIGITS, DISTANCES, NIL, Slopes, size_of, slopes_of
 from tippetop.integrators.base import Array
 from tippetop.mechanics.top import natural_units
 from tippetop.problem.problem import Problem, require_problem, top_of
@@ -75,9 +75,11 @@ def sensitivities(
         is that of the variable over that of the field, which the coordinate `parameter_units` has.
         Where a derivative does not exist it is NaN from there on. One that two distances do not
         give to six digits of the largest of its variable is NaN, too: of those by all fields that
-        are asked for, each field changing by its own size. `reason`, by parameter, says why. A
-        metric that the run itself does not have, such as the time of turning over where it does not
-        turn over within the duration, has none either: its attribute `reason` says so.
+        are asked for, each field changing by its own size. `reason`, by parameter, says why. One is
+        zero where both distances show no more of it than rounding, as that grows through the run,
+        and rounding is less than the sixth digit of the variable itself. A metric that the run
+        itself does not have, such as the time of turning over where it does not turn over within
+        the duration, has none either: its attribute `reason` says so.
 
     Raises
     ------
@@ -106,7 +108,7 @@ def sensitivities(
         check = LinearizedRun(problem, duration, grid, directions, distance=CHECKED * BESIDE)
     nominal = run.read()
     slopes_by_field = [
-        _slopes_before_failures(run, check, direction) for direction in range(len(fields))
+        _slopes_before_failures(run, check, direction, nominal) for direction in range(len(fields))
     ]
     largest = {
         name: max(
@@ -125,14 +127,16 @@ def sensitivities(
 
 
 def _slopes_before_failures(
-    run: LinearizedRun, check: LinearizedRun | None, direction: int
+    run: LinearizedRun, check: LinearizedRun | None, direction: int, nominal: RunReading
 ) -> dict[str, Slopes]:
     """Return the derivatives of the variables with respect to a field, NaN from where those of the
-    run or of its check fail.
+    run or of its check fail, and of metrics that the run itself does not have.
     """
     if check is not None and direction in check.failures:
         run.fail(direction, *check.failures[direction])
-    return slopes_of(run, direction)
+    slopes, variables = slopes_of(run, direction), nominal.variables
+    missing = [name for name in slopes if not variables[name].dims and np.isnan(variables[name])]
+    return slopes | {name: slopes[name].before(0.0) for name in missing}
 
 
 def _known_slopes(
@@ -151,16 +155,35 @@ def _known_slopes(
     reason = run.failures.get(direction, (np.inf, ""))[1]
     if check is None:
         return {name: one.values for name, one in slopes.items()}, reason
-    beside, columns, scale = slopes_of(check, direction), {}, run.fields[direction].scale
+    beside, columns, zeros = slopes_of(check, direction), dict[str, Array](), dict[str, float]()
+    scale = run.fields[direction].scale
     for name, one in slopes.items():
         variable = nominal.variables[name]
         natural = natural_size(variable.attrs.get("units", "1"), nominal.units)
         size = max(size_of(variable.values), natural)
         least = max(DIGITS * largest[name], NIL * size)
         columns[name] = one.known_beside(beside[name], least / scale)
+        is_unknown = np.isnan(columns[name]) & ~np.isnan(one.values)
+        if np.any(np.abs(one.values[is_unknown]) <= DIGITS * size / scale):
+            zeros[name] = DIGITS * size / scale
+    if zeros:
+        rounding = _rounding_of(run, direction)
+        for name, bound in zeros.items():
+            is_zero = slopes[name].zeros_beside(beside[name], rounding[name], bound)
+            columns[name] = np.where(np.isnan(columns[name]) & is_zero, 0.0, columns[name])
     if any(np.any(np.isnan(columns[name]) > np.isnan(slopes[name].values)) for name in slopes):
         reason = f"{reason}; {FEW_DIGITS}" if reason else FEW_DIGITS
     return columns, reason
+
+
+def _rounding_of(run: LinearizedRun, direction: int) -> dict[str, Slopes]:
+    """Return what rounding of the differences at the junctions of a run has made of the derivatives
+    of its variables with respect to a field.
+    """
+    still, source = [run.fields[direction].without_motion()], (run, direction)
+    rounded = LinearizedRun(run.problem, run.duration, run.grid, still, rounding_of=source)
+    # Few digits of it are asked for: one distance gives them.
+    return slopes_of(rounded, 0, DISTANCES[1:2])
 
 
 def _labelled(

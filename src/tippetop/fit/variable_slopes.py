@@ -2,11 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tippetop.fit.linearized_run import EVENT_STATES, FOUR, Differs, LinearizedRun, RunReading
+from tippetop.fit.linearized_run import (
+    EVENT_STATES,
+    FOUR,
+    RULE_ROUNDING,
+    Differs,
+    LinearizedRun,
+    RunReading,
+)
 from tippetop.integrators.base import Array
 from tippetop.results.catalogue import DERIVED, LISTED, METRICS, SAMPLED, Variable
 
@@ -26,9 +34,6 @@ SETTLED = 1e-8
 """Error of the rule over the largest derivative of a variable up to which nearer runs are not asked
 for."""
 
-RULE_ROUNDING = 1.5 * np.finfo(float).eps
-"""Rounding of a variable of size 1 in the rule, times the distance: the sum of its weights."""
-
 DIGITS = 5e-7
 """Difference of derivatives that are found by other distances beside the run, over the largest of
 their variable by any field, beyond which fewer than six digits count as known: half of the sixth
@@ -38,6 +43,11 @@ NIL = 1e-9
 """Change of a variable over its largest value, or its natural unit if that is more, where a field
 changes by its own size, below which no digits of a derivative are asked for: it may be zero but for
 rounding."""
+
+WITHIN = 30.0
+"""How many times the rounding that is followed through a run a derivative that is zero may be: an
+impact rounds ten times and more.
+"""
 
 TIMES = {"time": "time", "event": "event_time"}
 """Variables with the times of the values along a dimension."""
@@ -95,20 +105,33 @@ class Slopes:
             values[self.times >= end] = np.nan
         return replace(self, values=values)
 
+    def zeros_beside(self, second: Self, rounding: Self, bound: float) -> NDArray[np.bool_]:
+        """Return where the derivatives, and those by differences at another distance, `second`, are
+        no more than what rounding has made of them up to then, and that is within a bound.
+        """
+        count = len(self.values) if self.values.ndim else 0
+        sizes = np.maximum(np.abs(self.values), _padded(np.abs(second.values), count))
+        within = _padded(WITHIN * np.abs(rounding.values), count)
+        if within.ndim:
+            others = tuple(range(1, within.ndim))
+            grown = np.maximum.accumulate(np.max(within, axis=others, keepdims=True, initial=0.0))
+            within = np.broadcast_to(grown, within.shape)
+        return np.asarray((sizes <= within) & (within <= bound))
+
     def known_beside(self, second: Self, bound: float) -> Array:
         """Return the derivatives, NaN where differences at another distance, `second`, or their own
-        estimated errors are off by more than a bound.
+        estimated errors are off by more than a bound, or `second` has none.
         """
-        mine, others = self.up_to(second), second.up_to(self)
-        off = np.fmax(np.abs(mine.values - others.values), mine.errors)
-        values = self.values.copy()
-        within: Any = slice(len(off)) if off.ndim else ...
-        values[within] = np.where(off > bound, np.nan, values[within])
-        return values
+        count = len(self.values) if self.values.ndim else 0
+        off = np.maximum(np.abs(self.values - _padded(second.values, count)), self.errors)
+        return np.where(off <= bound, self.values, np.nan)
 
 
-def slopes_of(run: LinearizedRun, direction: int) -> dict[str, Slopes]:
-    """Return the derivatives of the variables of a run with respect to a field, by name.
+def slopes_of(
+    run: LinearizedRun, direction: int, distances: Sequence[float] = DISTANCES
+) -> dict[str, Slopes]:
+    """Return the derivatives of the variables of a run with respect to a field, by name, read off
+    at some distances beside it.
 
     Where no run beside it goes through its events from some time on, the run is told so (see
     `LinearizedRun.failures`).
@@ -116,7 +139,7 @@ def slopes_of(run: LinearizedRun, direction: int) -> dict[str, Slopes]:
     best = dict[str, Slopes]()
     while not best:
         is_small = run.reach(direction, DISTANCES[0]) < SMALL_CHANGE
-        for distance in (FIRST_DISTANCE, *DISTANCES) if is_small else DISTANCES:
+        for distance in (FIRST_DISTANCE, *distances) if is_small else distances:
             change = run.reach(direction, distance)
             try:
                 readings = [run.read_beside(direction, place * change) for place, _ in FOUR]
@@ -162,6 +185,13 @@ def differences(readings: Sequence[RunReading], step: float) -> dict[str, Slopes
         times = None if when is None else shown[2][when].values[common]
         slopes[name] = Slopes(values, truncation, rounding, times, is_settled)
     return slopes
+
+
+def _padded(values: Array, count: int) -> Array:
+    """Return so many values, NaN beyond their end; a number as it is."""
+    if not values.ndim:
+        return values
+    return np.concatenate([values, np.full((count, *values.shape[1:]), np.nan)])[:count]
 
 
 def size_of(values: Array) -> float:
