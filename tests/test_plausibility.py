@@ -63,6 +63,7 @@ def test_no_preset_is_implausible(name):
         ({"body.mass": 20.0}, "the mass is 20 kg; most tops have 0.1 g to 5 kg"),
         ({"body.mass": 5e-5}, "the mass is 0.05 g; most tops have 0.1 g to 5 kg"),
         ({"body.shape.radius": 0.4}, "the body is 800 mm across and 800 mm high"),
+        ({"body.shape.radius": 15.0}, "the body is 30 m across and 30 m high"),
         ({"body.shape.radius": 4e-4}, "the body is 0.8 mm across and 0.8 mm high"),
         (
             {"friction": tt.ContensouFriction(mu=0.3, patch_radius=0.011)},

@@ -69,7 +69,7 @@ def test_a_file_states_the_material_unless_it_is_named(asked, tmp_path):
 def test_a_file_is_read_as_body_reads_it(asked, tmp_path):
     (tmp_path / "a.csv").write_text("r,z\n0,-20\n0,20,20")
     words = ("a.csv", "--density", "beech")
-    with pytest.warns(tt.Implausible, match="4e.04 mm across"):
+    with pytest.warns(tt.Implausible, match="the body is 40 m across and 40 m high"):
         said(*words)
     said(*words, "--unit", "mm", "--tolerance", "0.01", "--upside-down")
     assert (asked["body"].unit, asked["body"].tolerance) == ("mm", 0.01)

@@ -161,15 +161,13 @@ def _rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
         rows.append(
             (
                 f"lying on {where}, it rises above",
-                spelled(outlook.lying.rate, 6),
+                spelled(outlook.lying.rate),
                 "rad/s about the vertical",
             )
         )
     if outlook.resting_center is not None and not outlook.conserved:
         what = "rolls at this tilt about its centre at"
-        rows.append(
-            (what, spelled(outlook.resting_center.precession, 6), "rad/s about the vertical")
-        )
+        rows.append((what, spelled(outlook.resting_center.precession), "rad/s about the vertical"))
     if outlook.standing_time is not None:
         vertical = outlook.tilt in (0.0, math.pi)
         what = "drilling lets it stand" if vertical else "inverted with this λ it would stand"
@@ -228,9 +226,9 @@ def _standing_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
     if standing is None:
         return []
     rows = [
-        ("sleeps on a contact that rolls above", spelled(standing.rolling.spin, 6), "rad/s"),
-        ("sleeps on a fixed point (textbooks) above", spelled(standing.pivot.spin, 6), "rad/s"),
-        ("sleeps on a smooth table above", spelled(standing.smooth.spin, 6), "rad/s"),
+        ("sleeps on a contact that rolls above", spelled(standing.rolling.spin), "rad/s"),
+        ("sleeps on a fixed point (textbooks) above", spelled(standing.pivot.spin), "rad/s"),
+        ("sleeps on a smooth table above", spelled(standing.smooth.spin), "rad/s"),
         (
             "without spin it falls, e-fold in",
             spelled(1.0 / standing.rolling.growth_rate_at_rest, 3),
@@ -242,7 +240,7 @@ def _standing_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
             what = f"falls now ({table}), e-fold in"
             rows.append((what, spelled(1.0 / threshold.growth_rate, 3), "s"))
     if math.isfinite(standing.creep_time):
-        below = ("slip that creeps tips it below", spelled(standing.creep_spin, 6), "rad/s")
+        below = ("slip that creeps tips it below", spelled(standing.creep_spin), "rad/s")
         always = ("slip that creeps tips it", "at any spin", "")
         rows += [
             below if math.isfinite(standing.creep_spin) else always,
@@ -290,7 +288,7 @@ def _state_row(entry: "AnalysedState") -> tuple[str, ...]:
     if spectrum is not None:
         verdict = "stable" if spectrum.stable else "unstable" if spectrum.unstable else "neutral"
         growth = f"{1.0 / spectrum.growth_rate:.4g}" if spectrum.unstable else ""
-    motion = (spelled(value, 6) for value in (state.tilt, state.precession, state.spin))
+    motion = (spelled(value) for value in (state.tilt, state.precession, state.spin))
     return (state.kind.value, *motion, f"{state.energy:.5g}", verdict, growth)
 
 

@@ -70,7 +70,7 @@ def steady(choice: Choice, at: At = None, as_json: Json = False) -> None:
         show("No motion with these numbers is steady." if at else NONE_OF_THE_LAUNCH)
     if straight is not None:
         name = "rolls straight on its edge above"
-        show(facts([(name, spelled(straight, 6), "rad/s" if math.isfinite(straight) else "")]))
+        show(facts([(name, spelled(straight), "rad/s" if math.isfinite(straight) else "")]))
 
 
 def _numbers(at: list[str]) -> dict[str, Any]:
@@ -121,8 +121,8 @@ def _plain(spectrum: "Spectrum | None") -> dict[str, Any]:
 
 def _row(state: "SteadyState[float]", spectrum: "Spectrum | None") -> tuple[str, ...]:
     """Return a state's row of the table."""
-    numbers = [spelled(value, 6) for value in (state.tilt, state.precession, state.spin)]
-    radius = spelled(state.radius, 6) if math.isfinite(state.radius) else "straight"
+    numbers = [spelled(value) for value in (state.tilt, state.precession, state.spin)]
+    radius = spelled(state.radius) if math.isfinite(state.radius) else "straight"
     verdict, time = "", ""
     if spectrum is not None:
         verdict = "stable" if spectrum.stable else "unstable" if spectrum.unstable else "lasts"

@@ -25,7 +25,7 @@ def facts(rows: Iterable[Sequence[str]]) -> "Table":
     return table
 
 
-def spelled(value: float, digits: int = 10) -> str:
+def spelled(value: float, digits: int = 6) -> str:
     """Return a number as text, or "never" for an infinite time or spin."""
     return f"{value + 0.0:.{digits}g}" if math.isfinite(value) else "never"
 

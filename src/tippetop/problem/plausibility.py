@@ -283,10 +283,12 @@ def _top_heaviness(surface: Surface) -> float:
 
 
 def _text(number: Scalar, unit: str) -> str:
-    """Return a number with its unit for people: lengths in mm, masses below 1 kg in g."""
+    """Return a number with its unit for people: lengths below 10 m in mm, masses below 1 kg in
+    g.
+    """
     if unit == "":
         return str(number)
-    if unit == "m":
+    if unit == "m" and number < 10.0:
         return f"{1000.0 * number:.4g} mm"
     if unit == "kg" and number < 1.0:
         return f"{1000.0 * number:.4g} g"
