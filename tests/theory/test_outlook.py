@@ -307,6 +307,16 @@ def test_the_command_tells_programs_the_same():
     assert smooth["omega_c_tilt"] == 0.2
 
 
+def test_eigenvalues_of_a_smooth_table_have_no_real_parts_to_be_read():
+    """Without friction nothing grows or decays: what is computed of it is rounding."""
+    told = CliRunner().invoke(app, ["critical", "--mu", "0"]).stdout
+    lines = [line for line in told.splitlines() if line.startswith(("upright: ", "inverted: "))]
+    assert len(lines) == 2
+    values = ", ".join(line.partition(": ")[2] for line in lines).split(", ")
+    assert all(value.split(" ± ")[0] == "0" for value in values)
+    assert sum("±" in value for value in values) == 4
+
+
 def test_the_command_refuses_in_a_sentence_what_the_theory_cannot_tell():
     result = CliRunner().invoke(app, ["critical", "--spin", "1e100"])
     assert isinstance(result.exception, InvalidInput)

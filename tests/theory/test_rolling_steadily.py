@@ -263,6 +263,17 @@ def test_circles_need_friction_that_sticks():
         tt.steady_states(thin_disk().replace({"rolling_resistance": 1e-5}), tilt=1.2)
 
 
+def test_the_command_says_from_which_spin_a_body_rolls_straight():
+    """An egg on its waist has its centre of mass at its lowest; a coin on its edge has not."""
+    said = {
+        name: CliRunner().invoke(app, ["steady", "--preset", name]).stdout
+        for name in ("egg", "coin")
+    }
+    assert said["egg"].split()[-5:] == ["rolls", "straight", "at", "any", "spin"]
+    assert "rolls straight above" in said["coin"]
+    assert "No steady motion is known that this launch ends in" in " ".join(said["coin"].split())
+
+
 def test_the_command_shows_a_circle_with_units(tmp_path):
     file = tmp_path / "disk.json"
     file.write_text(thin_disk().model_dump_json())

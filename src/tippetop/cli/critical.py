@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from itertools import compress
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from tippetop.cli.options import Choice, Json, of_a_problem
 from tippetop.cli.terminal import facts, listing, show, show_json, spelled
 
@@ -102,6 +104,10 @@ RESISTED = (
 )
 WITHIN_A_NUTATION = ("comes within 0.01 rad of there", "in its first nutation", "")
 """Row of a launch that friction need not bring to its end."""
+ROUNDING_OF_EIGENVALUES = 1e-12
+"""Part of an eigenvalue, relative to the largest eigenvalue, below which it is rounding: computed
+eigenvalues are off by some 1e-15 of the largest one.
+"""
 FLAT = (
     "This body lies flat when its axis is vertical: it has no vertical spin. `tippetop steady`"
     " shows the circles in which it rolls."
@@ -258,7 +264,7 @@ def _end_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
     rows = []
     if outlook.swings is not None:
         low, high = outlook.swings
-        rows.append(("swings for ever in θ", f"{low:.9g} to {high:.9g}", "rad"))
+        rows.append(("swings for ever in θ", f"{low:.6g} to {high:.6g}", "rad"))
     if outlook.stays is not None:
         state, stable = outlook.stays.state, outlook.stays.stable
         until = "" if stable else " until disturbed"
@@ -295,5 +301,15 @@ def _state_row(entry: "AnalysedState") -> tuple[str, ...]:
 def _eigenvalues(entry: "AnalysedState") -> str:
     """Return the eigenvalues as text; one of each conjugate pair stands for both."""
     assert entry.spectrum is not None
-    shown = [value for value in entry.spectrum.eigenvalues.tolist() if value.imag >= 0]
-    return ", ".join(f"{v.real:.5g} ± {v.imag:.6g}i" if v.imag else f"{v.real:.5g}" for v in shown)
+    values = entry.spectrum.eigenvalues
+    least = ROUNDING_OF_EIGENVALUES * np.abs(values).max(initial=0.0)
+    parts = [(_cleared(v.real, least), _cleared(v.imag, least)) for v in values.tolist()]
+    return ", ".join(
+        f"{real:.5g} ± {imaginary:.6g}i" if imaginary else f"{real:.5g}"
+        for real, imaginary in parts
+        if imaginary >= 0.0
+    )
+
+
+def _cleared(value: float, least: float) -> float:
+    return value if abs(value) > least else 0.0

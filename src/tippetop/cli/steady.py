@@ -69,8 +69,7 @@ def steady(choice: Choice, at: At = None, as_json: Json = False) -> None:
     else:
         show("No motion with these numbers is steady." if at else NONE_OF_THE_LAUNCH)
     if straight is not None:
-        name = "rolls straight on its edge above"
-        show(facts([(name, spelled(straight), "rad/s" if math.isfinite(straight) else "")]))
+        show(facts([_straight_row(straight)]))
 
 
 def _numbers(at: list[str]) -> dict[str, Any]:
@@ -105,6 +104,15 @@ def _straight(problem: "Problem") -> float | None:
         return least_straight_spin(problem)
     except InvalidInput:
         return None
+
+
+def _straight_row(spin: float) -> tuple[str, str, str]:
+    """Return the row of the least spin of straight rolling."""
+    if spin == 0.0:
+        return "rolls straight", "at any spin", ""
+    if math.isinf(spin):
+        return "rolls straight", "at no spin", ""
+    return "rolls straight above", spelled(spin), "rad/s"
 
 
 def _plain(spectrum: "Spectrum | None") -> dict[str, Any]:
