@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import tippetop as tt
-from tippetop.fit.end_slopes import end_slopes
+from tippetop.fit.end_slopes import end_slopes, known_end_slopes
 from tippetop.fit.linearized_run import LinearizedRun
 from tippetop.fit.problem_numbers import Direction
 
@@ -49,3 +49,29 @@ def test_a_field_at_its_bound_has_none_after_the_impact():
     before = slopes_of(1.0, 0.05)
     assert before["contact.restitution"] == pytest.approx([0.0, 0.0], abs=1e-9)
     assert before["launch.gap"] == pytest.approx([1.0, 0.0], abs=1e-9)
+
+
+def test_derivatives_of_which_rounding_leaves_few_digits_are_missing():
+    """An egg jumps without friction and without spin. By its spin the axis leaves the plane, and
+    the tilt does not change: rounding of that is ten times as much after every jump.
+    """
+    problem = tt.Problem(
+        body=tt.Body(mass=0.05, shape=tt.Spheroid(across=0.02, along=0.03), I1=1.3e-5, I3=8e-6),
+        friction=tt.ViscousFriction(mu=0.0),
+        launch=tt.Launch(tilt=0.7, spin=0.0, gap=0.01),
+        contact=tt.Contact(liftoff="fly", restitution=1.0),
+    )
+
+    def known(end):
+        directions = [Direction.of(problem, "launch.spin")]
+        return known_end_slopes(
+            problem, end, directions, lambda state, *_: np.array(state.axis), np.ones(3)
+        )
+
+    # One jump is followed to rounding: x and z do not change.
+    assert known(0.1)[0, [0, 2]] == pytest.approx([0.0, 0.0], abs=1e-9)
+    late = known(1.0)[0]
+    assert np.isnan(late).tolist() == [True, False, True]
+    step = 1e-4  # The axis leaves the plane the other way by the opposite spin.
+    spun = tt.simulate(problem.replace({"launch.spin": step}), 1.0, samples=2)
+    assert late[1] == pytest.approx(spun["axis"].values[-1, 1] / step, rel=1e-4)

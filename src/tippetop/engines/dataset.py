@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 import tippetop as tt
 from tippetop.contact.mode import EventKind
 from tippetop.engines.families import FAMILIES, SHARES, drawn_problem
-from tippetop.fit.end_slopes import end_slopes
-from tippetop.fit.linearized_run import LinearizedRun
+from tippetop.fit.end_slopes import known_end_slopes
 from tippetop.fit.problem_numbers import Direction
 from tippetop.mechanics.motion import angular_velocity
 from tippetop.mechanics.natural_units import Units
 from tippetop.mechanics.state import State
-from tippetop.mechanics.top import Top
+from tippetop.mechanics.top import Top, natural_units
 from tippetop.mechanics.vectors import scale
+from tippetop.problem.problem import top_of
 from tippetop.support.errors import FileTrouble, InvalidInput, Unavailable, is_number, is_whole
 from tippetop.support.files import (
     in_words,
@@ -216,7 +216,7 @@ ATTRIBUTES: dict[str, dict[str, Any]] = {
     "event_time": {"units": "s", "long_name": "time of the event"},
     "event_kind": {"long_name": "kind of the event", "words": list(EVENT_KINDS)},
     "event_surface": {"long_name": "number of the surface"},
-    "derivative": {"long_name": "derivative of the state at end_time by a field; nan without one"},
+    "derivative": {"long_name": "derivative of the state at end_time by a field; nan if not known"},
     "derived_problem": {"long_name": "number of the problem that has the derivatives"},
 }
 DIMENSIONS = {
@@ -323,12 +323,11 @@ def _derivatives(seed: int, number: int, times: Array) -> Array:
     """Return the derivatives of the last state of a problem by its fields."""
     drawn, end = drawn_problem(seed, number), float(times[-1])
     directions = [Direction.of(drawn.problem, name) for name in drawn.fields]
-    run = LinearizedRun(drawn.problem, end, np.array([0.0, end]), directions)
+    units = natural_units(top_of(drawn.problem))
+    naturals = np.repeat([1.0, 1.0 / units.time, units.speed, units.length], [3, 3, 3, 1])
     table = np.full((len(FIELDS), len(NUMBERS)), np.nan)
-    for direction, name in enumerate(drawn.fields):
-        slopes = end_slopes(run, direction, _numbers_of)
-        if slopes is not None:
-            table[FIELDS.index(name)] = slopes
+    rows = [FIELDS.index(name) for name in drawn.fields]
+    table[rows] = known_end_slopes(drawn.problem, end, directions, _numbers_of, naturals)
     return table
 
 

@@ -71,6 +71,11 @@ The error of the rule over four such runs is the fourth power of that over the s
 and rounding over it: slip that is about to end, at 1e-3, is the smallest scale.
 """
 
+CHECKED = 0.6
+"""How much nearer to the run its junctions are followed in the check of the derivatives: the error
+of the rule is an eighth then, and rounding another, so that both differ by what the first are off.
+"""
+
 READ_BESIDE = 5e-6
 """How far beside the run its variables are read off by two runs, in natural units: the error is the
 square of that over the scale of the motion, as small as 1e-2 for normal forces, and rounding over

@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tippetop.contact.trajectory import require_limits
-from tippetop.fit.linearized_run import BESIDE, LinearizedRun, RunReading
+from tippetop.fit.linearized_run import BESIDE, CHECKED, LinearizedRun, RunReading
 from tippetop.fit.problem_numbers import Direction, natural_size, require_fields
 from tippetop.fit.variable_slopes import DIGITS, DISTANCES, NIL, Slopes, size_of, slopes_of
 from tippetop.integrators.base import Array
@@ -18,11 +18,6 @@ from tippetop.results.checked_times import sample_times
 from tippetop.results.sample_counts import DEFAULT_SAMPLES
 from tippetop.support.units import number_in
 from tippetop.support.validation import require_names
-
-CHECKED = 0.6
-"""How much nearer to the run its junctions are followed in the check of the derivatives: the error
-of the rule is an eighth then, and rounding another, so that both differ by what the first are off.
-"""
 
 FEW_DIGITS = (
     "derivatives of which fewer than six digits are known are NaN: differences at two distances"
