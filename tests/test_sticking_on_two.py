@@ -189,6 +189,34 @@ def test_force_across_the_line_reduces_the_reserve_along_it() -> None:
     assert seen == {False, True}
 
 
+def test_a_cone_that_rolls_on_a_slope_slips_once_friction_no_longer_holds_it_along_itself() -> None:
+    """It turns downhill until the weight along the line is all that both contacts can hold, though
+    each could hold more across it.
+    """
+    shape = [tt.Sphere(radius=0.005, center=0.02), tt.Sphere(radius=0.004, center=-0.02)]
+    problem = tt.Problem(
+        body=tt.Body(mass=MASS, shape=shape, I1=2e-6, I3=1.25e-7),
+        friction=tt.CoulombFriction(mu=0.2),
+        launch=tt.Launch(tilt=math.acos(0.001 / 0.04), spin=0.0),
+        table=tt.Table(slope=0.19, azimuth=0.3),
+    )
+    run = tt.simulate(problem, 0.6, samples=2)
+    assert run.attrs["status"] == "completed"
+    assert [times(run, kind)[:1] for kind in ("stick", "slip")] == [[0.0], times(run, "slip")[1:]]
+    units = natural_units(top_of(problem))
+    automaton = automaton_of(problem.contact, natural(top_of(problem)), units)
+    start = automaton.launch(natural_state(problem.start(), units))
+    method = make_integrator("dop853", 3e-14)
+    held = next(iter(Trajectory(automaton, start, 0.6 / units.time, method).segments()))
+    end = held.end_state
+    forces = forces_on_two(
+        contact_points(end.axis, end.momentum, held.mode.tops), (None, None), 0.0
+    )
+    assert held.end_time * units.time == pytest.approx(times(run, "slip")[0], rel=1e-9)
+    assert forces.both_reserve == pytest.approx(0.0, abs=1e-9)
+    assert min(forces.sticking_reserve(0), forces.sticking_reserve(1)) > 1e-3
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("seed", "near"), [(ONE_THEN_BOTH, 1e-3), (SLIPS_AGAIN, 1e-2)])
 def test_sticking_on_two_is_the_limit_of_smoothed_friction(seed, near) -> None:
