@@ -224,3 +224,26 @@ def test_a_top_released_at_rest_falls_under_every_law(friction, arm):
         np.testing.assert_allclose(other[name], run[name], rtol=0.0, atol=exact, err_msg=name)
     assert (float(run["energy_lost_rolling"]) > 0.0) == (arm > 0.0)
     assert float(run["energy_lost_sliding"]) >= -1e-14 * float(run["initial_energy"])
+
+
+def test_rolling_that_is_held_begins_once_friction_of_slip_has_turned_towards_it() -> None:
+    """A top slides and turns about the vertical: the couple that keeps it from rolling grows to all
+    that the table exerts, which the monitor of the run sees.
+    """
+    problem = tt.presets.report_problem(tilt=0.3, spin=20.0 * np.cos(0.3)).replace(
+        {
+            "friction": tt.CoulombFriction(mu=0.05),
+            "rolling_resistance": 1e-3,
+            "launch.precession": 20.0,
+            "launch.slip": (0.3, 0.0),
+        }
+    )
+    run = tt.simulate(problem, 0.27, times=np.linspace(0.0, 0.27, 109))
+    assert run.attrs["status"] == "completed"
+    assert run["event_kind"].values.tolist() == ["rolling stops", "rolling starts"]
+    stops, starts = run["event_time"].values
+    rolling = np.hypot(*run["angular_velocity"].values[:, :2].T)
+    held = (run["time"].values > stops) & (run["time"].values < starts)
+    assert np.count_nonzero(held) > 10
+    assert rolling[held].max() < 1e-12
+    assert rolling[-1] > 1e-3
