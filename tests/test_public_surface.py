@@ -10,7 +10,7 @@ import inspect
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, get_origin
 
 import tippetop as tt
 from tippetop.problem import presets
@@ -39,6 +39,8 @@ def _lines(name: str, value: Any) -> Iterator[str]:
     elif isinstance(value, type):
         yield f"{name}{_parameters(value)}"
         yield from (f"{name}.{attribute}" for attribute in _attributes(value))
+    elif get_origin(value) is not None:
+        yield name  # what it can be called with differs by the version of Python
     elif callable(value):
         yield f"{name}{_parameters(value)}"
     else:

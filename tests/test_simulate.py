@@ -10,7 +10,7 @@ from importlib import import_module
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import HealthCheck, given, reject, settings
+from hypothesis import HealthCheck, assume, given, reject, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.spatial.transform import Rotation
@@ -553,6 +553,7 @@ BRIEFLY = {"duration": 0.5, "samples": 51}
 def test_direction_of_the_launch_turns_everything_with_it(problem, turn):
     turned = problem.replace({"launch.azimuth": problem.launch.azimuth + turn})
     run, other = tt.simulate(problem, **BRIEFLY), tt.simulate(turned, **BRIEFLY)
+    assume(is_regular(run))
     near, matrix = comparison(problem), Rotation.from_rotvec([0, 0, turn]).as_matrix()
     for name in ("axis", "velocity", "angular_momentum"):
         near(name, other[name], run[name].values @ matrix.T)
@@ -575,6 +576,7 @@ def test_mirrored_launch_gives_the_mirrored_run(problem):
         }
     )
     run, other = tt.simulate(problem, **BRIEFLY), tt.simulate(mirrored, **BRIEFLY)
+    assume(is_regular(run))
     near = comparison(problem)
     for name in ("tilt", "normal_force", "energy", "work", "x", "height"):
         near(name, other[name], run[name])
@@ -583,6 +585,16 @@ def test_mirrored_launch_gives_the_mirrored_run(problem):
     near("axis", other.axis, run.axis.values * [1, -1, 1])
     near("velocity", other.velocity, run.velocity.values * [1, -1, 1])
     near("angular_momentum", other.angular_momentum, run.angular_momentum.values * [-1, 1, -1])
+
+
+def is_regular(run):
+    """Whether a run has no singular end, into which nothing but a table that pulls lets a top go.
+
+    There its last numbers grow without bound, and those of no two runs agree.
+    """
+    is_singular = run.attrs["status"] == "failed"
+    assert not is_singular or run.normal_force.min() < 0.0
+    return not is_singular
 
 
 def comparison(problem):
