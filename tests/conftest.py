@@ -25,8 +25,6 @@ from tippetop.page_engine import HERE
 
 __all__ = ["browser", "visit"]
 
-gc.disable()  # until all tests are collected: to walk over what they import takes a fifth longer
-
 SOURCE = HERE.parent
 GENERATED = (HERE / "mechanics.js", HERE / "tables.js")
 
@@ -44,7 +42,10 @@ def pytest_configure(config: pytest.Config) -> None:
     if settings().derandomize:
         settings.register_profile("fixed", settings(), max_examples=examples(25, claim=2000))
         settings.load_profile("fixed")
-    if hasattr(config, "workerinput"):
+    is_worker = hasattr(config, "workerinput")
+    if is_worker or not config.getoption("numprocesses", None):
+        gc.disable()  # until all is collected: to walk over what tests import takes a fifth longer
+    if is_worker:
         return
     os.environ[RUN] = uuid.uuid4().hex  # all that is started from here on inherits it
     sources = [path.stat().st_mtime for path in SOURCE.rglob("*.py")]

@@ -210,6 +210,7 @@ FIT_OPTIONS = [
     ("--noise -1", "--noise: -1 is not a number greater than 0 in the unit of column tilt"),
     ("--most-runs 0", "--most-runs: 0 is not a whole number, at least 1"),
     ("--vary friction.mu=2:1", "--vary friction.mu: 2 to 1 is not a range"),
+    ("--vary friction.nu=2:3", "--vary: 'friction.nu' is not the name of a field"),
     ("--vary friction.mu=2rad:1", "--vary friction.mu: 2rad is an angle"),
     ("--track two", "--track: 'two' is no track of this file"),
     ("--frame-rate 60", "--frame-rate: 60 is only for a column of frames"),
@@ -235,7 +236,7 @@ def test_a_mistake_in_an_option_of_a_fit(
 
 
 FILM_OPTIONS = [
-    ("--scale 0.1mm", "--scale: 0.0001 is the size of a pixel, and column x is in mm (leave it"),
+    ("--scale 0.1mm", "--scale: 0.1mm is the size of a pixel, and column x is in mm (leave it"),
     ("--point nose", "--point: 'nose' is not 'tip', 'center'"),
 ]
 """The same of a film whose columns have units."""

@@ -66,7 +66,23 @@ def test_a_film_of_the_tip_gives_friction_and_spin(film):
     assert high - low == pytest.approx(2 * 1.959964 * fitted.errors["friction.mu"], rel=1e-6)
     units = {"friction.mu": "s/m", "launch.spin": "rad/s", "camera.angle": "rad"}
     assert fitted.units == units | {"camera.x": "px", "camera.y": "px"}
-    assert all(line.endswith(" s/m") for line in str(fitted).splitlines()[:1])
+    assert str(fitted).splitlines()[0].endswith(" s/m")
+
+
+def test_numbers_of_each_camera_have_its_unit(run):
+    """A camera without a scale measures in its own unit, whatever that of another one is."""
+    x, y = run["x"].values, run["y"].values
+    cameras = [
+        tt.Measurement.of_point(
+            TIMES, x * size, y * size, "above", point="center", scale=scale, unit=unit, noise=1.0
+        )
+        for size, scale, unit in ((5000.0, None, "px"), (1000.0, 1e-3, "mm"))
+    ]
+    units = tt.fit(TRUE, cameras, "friction.mu", starts=1).units
+    assert units["0.camera.scale"] == "m/px"
+    assert units["0.camera.x"] == "px"
+    assert units["1.camera.x"] == "mm"
+    assert units["1.camera.angle"] == "rad"
 
 
 def test_derivatives_are_those_of_the_drop():

@@ -203,6 +203,9 @@ BAD = {
     "columns of another kind": ("t,price\n0,0.1\n0.1,0.2\n", "t and tilt"),
     "infinite": ("t,tilt\n0,0.1\n0.1,inf\n", "line 3"),
     "points without a view": ("t,x,y\n0,1,2\n1,2,3\n", "'above' or 'side'"),
+    "a unit of x alone": ("t,x (mm),y\n0,1,2\n0.1,2,3\n", "unit of column y"),
+    "places in kilograms": ("t,x (kg),y (kg)\n0,1,2\n0.1,2,3\n", "unit of column x"),
+    "pictures without a rate": ("frame,tilt\n0,0.1\n1,0.2\n", "frame_rate in data.csv is missing"),
     "no such event": ("event,t\nturned,3.1\n", "turnover_time"),
 }
 
@@ -213,6 +216,11 @@ def test_bad_data_get_a_sentence(written, text, sentence):
         tt.read_measurement(written(text))
     assert "data.csv" in str(refusal.value)
     assert "\n" not in str(refusal.value)
+
+
+def test_times_long_before_the_launch_are_left_out(written):
+    data = tt.read_measurement(written("t,tilt\n-5000,0\n0,0.1\n0.1,0.2\n"))
+    assert data.times.tolist() == [0.0, 0.1]
 
 
 def still_run(tilt):

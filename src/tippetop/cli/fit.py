@@ -37,7 +37,7 @@ def fit(
         typer.Option(
             metavar="FIELDS",
             help="Fields to fit, with commas: friction.mu,launch.spin; or with ranges: "
-            "friction.mu=0.1:0.5.",
+            "friction.mu=0.1:0.5, or launch.spin='140rpm:160rpm'.",
         ),
     ] = "",
     noise: Annotated[
@@ -88,7 +88,7 @@ def fit(
         data,
         view=view,  # type: ignore[arg-type]
         point=point,
-        scale=number_of("--scale", scale, "m"),
+        scale=scale if scale is None else stated_value(scale),
         noise=noises,
         frame_rate=frame_rate,
         start=number_of("--start", start, "s"),

@@ -513,21 +513,18 @@ def _pattern(column: ResidualColumn) -> str:
 
 def _units(search: Search, problem: Problem) -> list[str]:
     """Return the units of the fitted numbers of a problem and of the instruments, for people."""
-    pictures = {
-        one.observation.unit
-        for one in search.model.measurements
-        if isinstance(one.observation, Camera)
-    }
-    picture = pictures.pop() if len(pictures) == 1 else "unit of the picture"
     units = list[str]()
-    for name in search.model.names:
-        field = name.lstrip("0123456789.")  # of one launch or instrument of several
-        if name in search.model.fields:
-            units.append(_for_people(problem.quantity(field).units))
-        elif field.endswith("angle"):
-            units.append("rad")
-        else:
-            units.append(f"m/{picture}" if field.endswith("scale") else picture)
+    for name in search.model.fields:
+        field = name.lstrip("0123456789.")  # of one launch of several
+        units.append(_for_people(problem.quantity(field).units))
+    for measurement in search.model.measurements:
+        observation = measurement.observation
+        picture = observation.unit if isinstance(observation, Camera) else ""
+        for name in observation.parameters:
+            if name.endswith("angle"):
+                units.append("rad")
+            else:
+                units.append(f"m/{picture}" if name.endswith("scale") else picture)
     return units
 
 

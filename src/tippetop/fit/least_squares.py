@@ -9,6 +9,7 @@ from tippetop.fit.fit_result import FitResult, result_of
 from tippetop.fit.joint_model import JointModel
 from tippetop.fit.measurement import Measurement, read_measurement
 from tippetop.fit.model import Model
+from tippetop.fit.problem_numbers import require_fields
 from tippetop.fit.search import MOST_RUNS, FitProgress, Search, deviations_of
 from tippetop.integrators.base import Array
 from tippetop.problem.implausible import warn_if_implausible
@@ -58,7 +59,8 @@ def fit(
         DataFrame, or a mapping of headings to numbers. None for several launches.
     vary
         Fields of numbers that are fitted, such as ``["friction.mu", "launch.spin"]``; or a mapping
-        of fields to ranges ``(low, high)`` that they stay in, or None for none. Missing initial
+        of fields to ranges ``(low, high)`` that they stay in, whose ends may have units as in
+        "150 rpm", or None for none. Missing initial
         conditions are fitted like anything else: "launch.tilt_rate", "launch.precession". None for
         those that are shared.
     shared
@@ -181,13 +183,14 @@ def _ranges(problem: Problem, vary: Any) -> tuple[tuple[str, ...], Array, Array]
     )
     if not ranges or not all(isinstance(field, str) for field in ranges):
         raise InvalidInput("vary", vary, "names of fields, such as friction.mu and launch.spin")
+    require_fields(problem, tuple(ranges), "vary")
     low, high = list[float](), list[float]()
     for field, ends in ranges.items():
         pair = (-np.inf, np.inf) if ends is None else ends
         if not (isinstance(pair, list | tuple) and len(pair) == 2):
             raise InvalidInput(f"vary.{field}", ends, "a range (low, high)")
         try:
-            lower, upper = (in_si_of(field, end) if isinstance(end, str) else end for end in pair)
+            lower, upper = (in_si_of(field, end) for end in pair)
         except InvalidInput as error:
             raise renamed(error, f"vary.{field}") from None
         if not (ends is None or (is_number(lower) and is_number(upper) and lower < upper)):

@@ -136,10 +136,10 @@ class Measurement:
         """
         if view not in VIEWS:
             raise not_one_of("view", view, VIEWS)
-        scale = number_in("scale", scale, "m")
-        if not (scale is None or (is_number(scale) and scale > 0.0)):
+        size = number_in("scale", scale, "m")
+        if not (size is None or (is_number(size) and size > 0.0)):
             raise InvalidInput("scale", scale, 'metres per pixel greater than 0, such as "0.2 mm"')
-        camera = Camera(view, _point(point), scale, unit)
+        camera = Camera(view, _point(point), size, unit)
         return cls._of(times, {"x": x, "y": y}, camera, noise)
 
     @classmethod
@@ -254,7 +254,7 @@ def read_measurement(
         Standard deviation of each column, in its unit, or a text with another one, such as
         "0.3 mm"; None if it is not known.
     frame_rate
-        Pictures a second, where the file numbers pictures.
+        Pictures a second, where the file numbers pictures; refused beside a column of times.
     start
         Time in the data at which the top is launched, s; rows before it are left out. None for 0,
         which is refused where the data begin later.
@@ -397,12 +397,18 @@ def _measurement_of(
         return _in_unit(named[name], units)[since]
 
     if "x" in named and "y" in named:
+        metres = _is_length(named["x"].unit)
+        units = "m" if metres else "px"
+        for name in ("x", "y"):
+            unit = named[name].unit
+            if _is_length(unit) != metres or not (metres or unit in ("", "px")):
+                stated = Described(unit or "no unit")
+                accepted = "a length or px, the same for x and y"
+                raise InvalidInput(f"unit of column {name}", stated, accepted)
         if view is None:
             raise InvalidInput(
                 "view", MISSING, "'above' or 'side': where the pictures were taken from"
             )
-        metres = _is_length(named["x"].unit) and _is_length(named["y"].unit)
-        units = "m" if metres else "px"
         if metres and scale is not None:
             fault = f"is the size of a pixel, and column x is in {named['x'].unit}"
             raise InvalidInput("scale", scale, "", fault, "leave it out")
@@ -454,18 +460,19 @@ def _times(named: Mapping[str, DataColumn], frame_rate: Any) -> Array:
             fault = "is only for a column of frames, and this file has column t"
             raise InvalidInput("frame_rate", frame_rate, "", fault, "leave it out")
         times = _in_unit(named["t"], "s")
-        if not named["t"].unit and _largest(times) > LONGEST_FILM:
-            longest = f"{_largest(times):.6g}"
+        longest = float(np.nan_to_num(times).max(initial=0.0))
+        if not named["t"].unit and longest > LONGEST_FILM:
             fault = "is more than an hour, and the column has no unit"
             hint = "write the unit into the header, such as t (ms)"
-            raise InvalidInput("t", longest, "", fault, hint)
+            raise InvalidInput("t", f"{longest:.6g}", "", fault, hint)
         return times
     if "frame" not in named:
         raise InvalidInput(
             "columns", ", ".join(named), "", "have no time", "name a column t or frame"
         )
     if not (is_number(frame_rate) and frame_rate > 0.0):
-        raise InvalidInput("frame_rate", frame_rate, "pictures a second, a number greater than 0")
+        rate = MISSING if frame_rate is None else frame_rate
+        raise InvalidInput("frame_rate", rate, "pictures a second, a number greater than 0")
     frames = named["frame"].numbers()
     since: Array = (frames - frames[0]) / frame_rate
     return since

@@ -701,7 +701,9 @@ class Search:
         first = np.clip(start[free] / sizes, low, high)
         if not np.isfinite(residuals_of(first)).all():
             return Minimum(start, np.inf, False, "the run does not show the data")
-        with np.errstate(all="ignore"):  # SciPy divides by slopes, which may be zero.
+        with np.errstate(
+            divide="ignore", invalid="ignore"
+        ):  # SciPy divides by slopes, which may be zero.
             result: OptimizeResult = least_squares(
                 residuals_of,
                 first,
