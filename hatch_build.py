@@ -73,10 +73,12 @@ def build_page(root: Path) -> None:
 
     Raises `node_tools.Failed` with the reason if one of these fails.
     """
-    # The package is found in the folder that the command runs in. From PYTHONPATH pip's isolated
-    # builds remove what is already installed, which the source is where it was installed before.
+    # `python -m` finds the package in the folder that it runs in, unless PYTHONSAFEPATH is set.
+    # PYTHONPATH cannot name that folder: pip's isolated builds take the folders of installed
+    # packages out of it, and an earlier editable installation makes the source one of them.
     translate = [sys.executable, "-m", "tippetop.page_engine"]
     environment = {**os.environ, "TIPPETOP_CACHE": "off"}
+    environment.pop("PYTHONSAFEPATH", None)
     node_tools.run("translating the engine", translate, root / "src", environment)
     node_tools.bundle()
     (root / BUILT / REASON).unlink(missing_ok=True)

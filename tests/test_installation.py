@@ -140,6 +140,7 @@ def test_what_is_installed_for_the_build_is_found_by_the_translation(
     )
     monkeypatch.setattr(hook.node_tools, "bundle", lambda: None)
     monkeypatch.setenv("PYTHONPATH", str(needed))
+    monkeypatch.setenv("PYTHONSAFEPATH", "1")
     hook.build_page(tmp_path)
     assert made.exists()
     monkeypatch.setenv("PYTHONPATH", "")
