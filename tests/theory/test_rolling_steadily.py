@@ -236,8 +236,8 @@ def test_a_disk_that_wobbles_about_its_centre_has_a_spectrum_on_a_contact_that_s
 @pytest.mark.parametrize(
     ("numbers", "field", "said"),
     [
-        ({"radius": 0.1}, "radius", "leaves the steady states open"),
-        ({"tilt": 1.0, "rate": 2.0, "spin": 3.0}, "tilt", "do not determine"),
+        ({"radius": 0.1}, "radius", "0.1 leaves the steady states open"),
+        ({"tilt": 1.0, "rate": 2.0, "spin": 3.0}, "tilt, rate, spin", "1, 2, 3 do not determine"),
         ({"tilt": 4.0}, "tilt", "less than pi"),
         ({"radius": -0.1, "tilt": 1.0}, "radius", "0 or more"),
         ({"rate": 0.0}, "spin", "rolls straight"),
@@ -269,8 +269,10 @@ def test_the_command_says_from_which_spin_a_body_rolls_straight():
         name: CliRunner().invoke(app, ["steady", "--preset", name]).stdout
         for name in ("egg", "coin")
     }
-    assert said["egg"].split()[-5:] == ["rolls", "straight", "at", "any", "spin"]
-    assert "rolls straight above" in said["coin"]
+    assert said["egg"].split()[-6:] == ["rolls", "straight", "stably", "at", "any", "spin"]
+    spin = tt.least_straight_spin(tt.presets.report_problem().replace({"body": tt.presets.COIN}))
+    row = said["coin"].split()[-6:]
+    assert row == ["rolls", "straight", "stably", "above", f"{spin:.6g}", "rad/s"]
     assert "No steady motion is known that this launch ends in" in " ".join(said["coin"].split())
 
 

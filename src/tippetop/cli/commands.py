@@ -46,8 +46,15 @@ UNEXPECTED = re.compile(r"unexpected extra argument(?:s|\(s\))? \((\S+)\)")
 """What typer says of an argument that a command does not take."""
 
 OPTIONS_OF_FILES = {
-    *("noise", "scale", "track", "start", "view", "point", "frame_rate"),
-    *("unit", "density"),
+    "noise",
+    "scale",
+    "track",
+    "start",
+    "view",
+    "point",
+    "frame_rate",
+    "unit",
+    "density",
 }
 """Options that say how a file is read: a refusal that names the file is of them."""
 

@@ -102,8 +102,6 @@ RESISTED = (
     "Rolling resistance stops an axis that moves slowly, and takes energy from every precession:"
     " there are no critical spins. Without it there are: try --set rolling_resistance=0."
 )
-WITHIN_A_NUTATION = ("comes within 0.01 rad of there", "in its first nutation", "")
-"""Row of a launch that friction need not bring to its end."""
 ROUNDING_OF_EIGENVALUES = 1e-12
 """Part of an eigenvalue, relative to the largest eigenvalue, below which it is rounding: computed
 eigenvalues are off by some 1e-15 of the largest one.
@@ -179,15 +177,20 @@ def _rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
         what = "drilling lets it stand" if vertical else "inverted with this λ it would stand"
         rows.append((what, spelled(outlook.standing_time), "s"))
     if outlook.mu_arrival_time is not None:
-        limit = (
-            "μ t until 0.01 rad from there, μ → 0",
-            spelled(outlook.mu_arrival_time, 4),
-            "s²/m",
-        )
-        rows.append(limit if outlook.mu_arrival_time > 0.0 else WITHIN_A_NUTATION)
+        rows.append(_arrival_row(outlook.mu_arrival_time))
     if outlook.arrival_time:
         rows.append(("so at this friction about", spelled(outlook.arrival_time, 4), "s"))
     return rows
+
+
+def _arrival_row(mu_time: float) -> tuple[str, str, str]:
+    """Return the row of the limit of μ t; at 0 the nutation alone brings the axis to its end."""
+    from tippetop.theory.averaging import ARRIVAL_DISTANCE  # noqa: PLC0415 - slow to import
+
+    distance = f"{ARRIVAL_DISTANCE:g} rad"
+    if mu_time > 0.0:
+        return f"μ t until {distance} from there, μ → 0", spelled(mu_time, 4), "s²/m"
+    return f"comes within {distance} of there", "in its first nutation", ""
 
 
 def _critical_rows(outlook: "Outlook") -> list[tuple[str, str, str]]:
@@ -307,9 +310,9 @@ def _eigenvalues(entry: "AnalysedState") -> str:
     return ", ".join(
         f"{real:.5g} ± {imaginary:.6g}i" if imaginary else f"{real:.5g}"
         for real, imaginary in parts
-        if imaginary >= 0.0
+        if not imaginary < 0.0
     )
 
 
 def _cleared(value: float, least: float) -> float:
-    return value if abs(value) > least else 0.0
+    return 0.0 if abs(value) <= least else value

@@ -233,13 +233,21 @@ def _parsed(change: str) -> tuple[str, Any]:
 def stated_value(text: str) -> Any:
     """Return the value of a text: a number or list as in JSON, else the text itself.
 
-    A number beyond the largest float stays a text too, so that its refusal shows it as typed.
+    Numbers that are not finite stay texts, in lists too.
     """
     try:
-        value = json.loads(text)
+        return json.loads(text, parse_float=number_or_text, parse_constant=str)
     except (ValueError, RecursionError):
         return text
-    return text if isinstance(value, float) and not is_number(value) else value
+
+
+def number_or_text(text: str) -> float | str:
+    """Return the finite number of a text, else the text, so that a refusal shows it as typed."""
+    try:
+        number = float(text)
+    except ValueError:
+        return text
+    return number if is_number(number) else text
 
 
 def number_option(kind: type[int] | type[float], text: str) -> Any:
@@ -250,13 +258,16 @@ def number_option(kind: type[int] | type[float], text: str) -> Any:
 
     def number(word: str) -> int | float:
         try:
-            return kind(word)
+            value = kind(word)
+            if kind is int or is_number(value):
+                return value
         except ValueError:
-            if kind is int:
-                refusal = InvalidInput("", word, "a whole number")
-            else:
-                refusal = InvalidInput("", word, "a finite number", hint=number_hint(word))
-            raise typer.BadParameter(str(refusal)) from refusal
+            pass
+        if kind is int:
+            refusal = InvalidInput("", word, "a whole number")
+        else:
+            refusal = InvalidInput("", word, "a finite number", hint=number_hint(word))
+        raise typer.BadParameter(str(refusal)) from refusal
 
     metavar = "INTEGER" if kind is int else NUMBER
     return typer.Option(parser=number, metavar=metavar, help=text)

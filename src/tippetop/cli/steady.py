@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tippetop.cli.options import Choice, Json, of_a_problem
+from tippetop.cli.options import Choice, Json, number_or_text, of_a_problem
 from tippetop.cli.terminal import facts, listing, show, show_json, spelled
 from tippetop.support.errors import InvalidInput, renamed
 
@@ -29,7 +29,7 @@ At = Annotated[
 NAMES = ("tilt", "rate", "radius", "spin")
 NONE_OF_THE_LAUNCH = (
     "No steady motion is known that this launch ends in. Numbers state others, as in"
-    " --at tilt=45deg --at radius=20cm."
+    " --at tilt=45deg."
 )
 
 
@@ -42,7 +42,7 @@ def steady(choice: Choice, at: At = None, as_json: Json = False) -> None:
     try:
         states = steady_states(problem, **_numbers(at or []))
     except InvalidInput as error:
-        if error.field in NAMES:
+        if set(error.field.split(", ")) <= set(NAMES):
             raise renamed(error, f"--at {error.field}") from None
         raise
     judged = [(state, _spectrum(problem, state)) for state in states]
@@ -79,10 +79,7 @@ def _numbers(at: list[str]) -> dict[str, Any]:
         name, _, value = word.partition("=")
         if name not in NAMES or not value or name in numbers:
             raise InvalidInput("--at", word, "NAME=VALUE, once each, of tilt, rate, radius, spin")
-        try:
-            numbers[name] = float(value)
-        except ValueError:
-            numbers[name] = value
+        numbers[name] = math.inf if value == "inf" else number_or_text(value)
     return numbers
 
 
@@ -97,7 +94,9 @@ def _spectrum(problem: "Problem", state: "SteadyState[float]") -> "Spectrum | No
 
 
 def _straight(problem: "Problem") -> float | None:
-    """Return the least spin of straight rolling, rad/s; None for a body that does not roll so."""
+    """Return the least spin of stable straight rolling, rad/s; None for a body that cannot roll
+    straight.
+    """
     from tippetop.theory.spectra import least_straight_spin  # noqa: PLC0415 - slow to import
 
     try:
@@ -107,12 +106,12 @@ def _straight(problem: "Problem") -> float | None:
 
 
 def _straight_row(spin: float) -> tuple[str, str, str]:
-    """Return the row of the least spin of straight rolling."""
+    """Return the row of the least spin of stable straight rolling."""
     if spin == 0.0:
-        return "rolls straight", "at any spin", ""
+        return "rolls straight stably", "at any spin", ""
     if math.isinf(spin):
-        return "rolls straight", "at no spin", ""
-    return "rolls straight above", spelled(spin), "rad/s"
+        return "rolls straight stably", "at no spin", ""
+    return "rolls straight stably", f"above {spelled(spin)}", "rad/s"
 
 
 def _plain(spectrum: "Spectrum | None") -> dict[str, Any]:

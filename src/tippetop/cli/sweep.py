@@ -16,6 +16,7 @@ from tippetop.cli.options import (
     Json,
     number_of,
     number_option,
+    number_or_text,
     of_a_problem,
     write_figure,
 )
@@ -270,9 +271,9 @@ def _axis(text: str) -> tuple[str, Any]:
     field, equals, values = text.partition("=")
     try:
         match values.split(":"):
-            case [numbers] if equals:
+            case [numbers] if field and equals:
                 return field.strip(), _numbers(numbers.split(","))
-            case [first, last, count, *spacing] if equals and len(spacing) < 2:
+            case [first, last, count, *spacing] if field and equals and len(spacing) < 2:
                 low, high = _numbers([first, last])
                 axis: dict[str, Any] = {"from": low, "to": high, "count": int(count)}
                 if spacing:
@@ -289,12 +290,12 @@ def _range(text: str) -> tuple[str, Any]:
     """Return a draw of the command line in the form of a sweep's file."""
     field, equals, values = text.partition("=")
     name, *parameters = values.split(":")
-    if equals and name.strip().isidentifier():
+    if field and equals and name.strip().isidentifier():
         return field.strip(), {"distribution": name.strip(), **_parameters(text, parameters)}
     low, _, high = values.removesuffix(":log").partition(":")
     spacing = "log" if values.endswith(":log") else "linear"
     try:
-        if equals:
+        if field and equals:
             first, last = _numbers([low, high])
             return field.strip(), {"from": first, "to": last, "spacing": spacing}
     except ValueError:
@@ -335,7 +336,7 @@ def _numbers(texts: list[str]) -> list[float | str]:
     numbers: list[float | str] = []
     for number, unit in pairs:
         unit_of_number = unit or last_unit
-        numbers.append(f"{number} {unit_of_number}" if unit_of_number else float(number))
+        numbers.append(f"{number} {unit_of_number}" if unit_of_number else number_or_text(number))
     return numbers
 
 

@@ -313,7 +313,7 @@ def check_steps(steps: Iterable[float]) -> None:
     """Raise `InvalidInput` unless programs can be measured with steps of all these lengths, s."""
     for step in steps:
         if not SHORTEST <= step <= READINGS:
-            raise InvalidInput("step", step, f"a length from {SHORTEST:g} to {READINGS:g} s")
+            raise InvalidInput("step", step, f"a time from {SHORTEST:g} to {READINGS:g} s")
 
 
 def _forget_left_out(result: dict[str, Any], task: EngineTask, steps: Sequence[float]) -> None:

@@ -147,8 +147,9 @@ class DrawnColumn(Column):
                 raise InvalidInput(name, MISSING, f"a shape parameter of {self.distribution}")
         if not np.isfinite(self._quantiles(np.array([0.5]))).all():
             written = ", ".join(f"{name} = {value:g}" for name, value in self.parameters.items())
-            fault, hint = "determine no distribution", "write others: a scale is above 0"
-            raise InvalidInput("", Described(written), "", fault, hint)
+            accepted = "a scale above 0" if "scale" in self.parameters else "other parameters"
+            stated = Described(f"{self.distribution} with {written}")
+            raise InvalidInput("", stated, accepted, "is not a distribution")
         return self
 
     @model_serializer

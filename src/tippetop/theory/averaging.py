@@ -142,7 +142,13 @@ def nutation_of_launch(problem: Problem) -> Nutation:
     return nutation_of_angles(Angles(launch.tilt, *rates, (0.0, 0.0)), numbers_of(top_of(problem)))
 
 
-def arrival_time_limit(problem: Problem, distance: float = 0.01) -> float:
+ARRIVAL_DISTANCE = 0.01
+"""Distance from its end within which the tilt counts as arrived, rad: that of `arrival_time` of
+runs, to which the limit is compared.
+"""
+
+
+def arrival_time_limit(problem: Problem, distance: float = ARRIVAL_DISTANCE) -> float:
     """Return the limit of mu times the flip time for small mu, s^2/m.
 
     The flip time is the first instant with the tilt within `distance` (rad) of its end. Raises

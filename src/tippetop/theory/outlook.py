@@ -127,8 +127,8 @@ class Outlook:
     both vertical spins with the launch's axial spin and the level spin with its precession.
     """
     mu_arrival_time: float | None
-    """mu times the time (s^2/m) until within 0.01 rad of the end, in the limit of small friction;
-    None if there is no limit, or no friction.
+    """mu times the time (s^2/m) until within `averaging.ARRIVAL_DISTANCE` of the end, in the limit
+    of small friction; None if there is no limit, or no friction.
     """
     arrival_time: float | None
     """`mu_arrival_time` divided by the problem's mu, s."""

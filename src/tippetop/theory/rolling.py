@@ -39,7 +39,7 @@ from tippetop.mechanics.top import Top, natural, natural_units
 from tippetop.mechanics.vectors import Scalar
 from tippetop.mechanics.view import Angles, state_from_angles
 from tippetop.problem.problem import Problem, top_of
-from tippetop.support.errors import MISSING, Described, InvalidInput, is_number
+from tippetop.support.errors import MISSING, Described, InvalidInput, is_number, short
 from tippetop.support.units import number_in
 from tippetop.theory.derivatives import jacobian
 from tippetop.theory.requirements import require_no_field, sticks
@@ -142,9 +142,8 @@ def _checked(numbers: dict[str, Any]) -> dict[str, float]:
     one or two that determine steady states.
     """
     asked: dict[str, float] = {}
-    for name, value in numbers.items():
-        if value is None:
-            continue
+    stated = {name: value for name, value in numbers.items() if value is not None}
+    for name, value in stated.items():
         number = number_in(name, value, UNITS[name])
         if not is_number(number) and not (name == "radius" and number == math.inf):
             raise InvalidInput(name, value, "a finite number")
@@ -172,8 +171,8 @@ def _checked(numbers: dict[str, Any]) -> dict[str, float]:
         asked["radius"] = 0.0
     if len(asked) != 2:
         raise InvalidInput(
-            next(iter(asked)),
-            Described(" and ".join(asked)),
+            ", ".join(stated),
+            Described(", ".join(map(short, stated.values()))),
             "two of tilt, rate, radius and spin, or one of tilt, rate and spin for a centre of mass"
             " that rests",
             "do not determine steady states" if len(asked) > 2 else "leaves the steady states open",

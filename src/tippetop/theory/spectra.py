@@ -77,8 +77,8 @@ def spectrum(problem: Problem, state: SteadyState[float]) -> Spectrum:
 def least_straight_spin(problem: Problem) -> float:
     """Return the axial spin above which a body that rolls straight on its edge does not fall over.
 
-    A thin disk of radius a rolls straight above sqrt(g / (3 a)), and any disk above sqrt(I1 m g a /
-    (I3 (I3 + m a^2))).
+    A thin disk of radius a rolls straight stably above sqrt(g / (3 a)), and any disk above
+    sqrt(I1 m g a / (I3 (I3 + m a^2))).
 
     Returns
     -------
