@@ -136,6 +136,8 @@ def in_javascript(
         process.stdin.write(json.dumps(launch) + "\n")
         process.stdin.flush()
         answer = process.stdout.readline()
+        if not answer:
+            _following.cache_clear()
         assert answer, "Node has ended"
         yield json.loads(answer)
 

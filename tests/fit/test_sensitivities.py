@@ -444,6 +444,31 @@ def test_slip_has_its_derivatives_however_it_is_followed():
         np.testing.assert_allclose(found, expected, rtol=1e-9)
 
 
+def test_slip_that_ends_beside_at_other_sizes_keeps_its_digits():
+    """The radius changes the slip at which its end is followed in another way, and runs beside are
+    to change there at the slip of their own size.
+    """
+    sphere = tt.EccentricSphere(radius=0.02544, eccentricity=0.1273)
+    problem = tt.presets.report_problem(spin=118.498).replace(
+        {
+            "body.shape": sphere,
+            "friction": tt.CoulombFriction(mu=0.4748),
+            "launch.tilt": 0.7986,
+            "launch.tilt_rate": 4.3996,
+            "launch.slip": (-0.4933, 0.0),
+        }
+    )
+
+    def numbers(problem):
+        run = tt.simulate(problem, 0.4, samples=2)
+        return run["orientation"].values[-1]
+
+    slopes = tt.sensitivities(problem, 0.4, "body.shape.radius", samples=2)
+    assert slopes["reason"].item() == ""
+    expected = known_by_differences(problem, "body.shape.radius", (2e-6, 1e-6, 5e-7), numbers)
+    np.testing.assert_allclose(slopes["orientation"].values[0, -1], expected, rtol=3e-8)
+
+
 def test_slip_that_nearly_ends_on_a_slope_has_the_derivatives_of_its_hodograph():
     """The slip of a ball that goes up a slope is v' = a - k v / |v|, a and k the rates by gravity
     and by friction. With x = ln tan (theta / 2), theta the angle of v to a, |v| = C exp(k x / a)

@@ -282,8 +282,21 @@ def test_a_run_of_too_many_steps_names_the_time_in_which_friction_damps_slip():
     assert float(named[1]) == pytest.approx(1.0 / rate, rel=0.05)
 
 
-def test_a_run_of_too_many_steps_of_what_is_not_stiff_names_none():
-    problem = stiff(0.3, **{"launch.spin": 1e5})
-    run = tt.simulate(problem, 1.0, samples=2, step_limit=1000)
+LYING = tt.Problem(
+    body=tt.Body(mass=0.02, shape=tt.Ring(radius=0.04, center=-0.005), I1=1e-5, I3=1.6e-5),
+    friction=tt.CoulombFriction(mu=0.3),
+    launch=tt.Launch(tilt=0.0, spin=20.0, slip=(0.4, 0.2)),
+)
+
+NOT_STIFF = {
+    "a top that spins fast": (stiff(0.3, **{"launch.spin": 1e5}), {"step_limit": 1000}),
+    "a disk on its face": (LYING, {"step_limit": 5}),
+    "implicit steps": (stiff(1e4), {"step_limit": 20, "integrator": "collocation"}),
+}
+
+
+@pytest.mark.parametrize(("problem", "limits"), NOT_STIFF.values(), ids=NOT_STIFF)
+def test_a_run_whose_steps_damping_does_not_bound_names_none(problem, limits):
+    run = tt.simulate(problem, 3.0, samples=2, **limits)
     assert run.attrs["status"] == "too_many_steps"
     assert "Reason" not in run.attrs["message"]

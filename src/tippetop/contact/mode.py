@@ -340,7 +340,7 @@ class IntegratedMode(Mode):
         return True
 
     def without_tops(self) -> Self:
-        """Return the mode without its tops: modes of one form are equal then."""
+        """Return the mode without its tops: modes of one form and law are equal then."""
         no_top: Any = None
         return replace(self, top=no_top)
 

@@ -61,9 +61,10 @@ def known_end_slopes(
     """Return the derivatives of numbers of the last state with respect to fields, in SI, shape
     (fields, numbers).
 
-    They are NaN where they do not exist, and where fewer than six digits are known, as
-    `tippetop.sensitivities` tells: where events are differentiated by differences, by two
-    distances. `naturals` has the natural unit of each number.
+    They are NaN where they do not exist, and, where events are differentiated by differences, where
+    two distances agree to fewer than six digits of the largest by any field. Unlike
+    `tippetop.sensitivities` they are NaN also where they are zero within rounding. `naturals` has
+    the natural unit of each number.
     """
     grid, scales = np.array([0.0, end]), np.array([[one.scale] for one in directions])
 

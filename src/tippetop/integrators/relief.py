@@ -81,11 +81,11 @@ class Relieved:
                 return
             implicit = self._implicit(LONGER * step)
             for arc in implicit.integrate(motion, parameters, start, end):
-                nowhere = stuck and arc.solution.end == start[0]
+                stuck = stuck and arc.solution.end == start[0]
                 start = arc.solution.end, arc.end_state
-                if arc.steps or nowhere:
-                    yield replace(arc, failure=NO_STEP if nowhere else None, method=implicit)
-                if arc.guard is not None or nowhere:
+                if arc.steps or stuck:
+                    yield replace(arc, failure=NO_STEP if stuck else None, method=implicit)
+                if arc.guard is not None or stuck:
                     return
 
 
@@ -100,8 +100,8 @@ def is_stiff(
 
 
 def fastest_damping(motion: Motion, parameters: Sequence[Scalar], states: Array) -> Array:
-    """Return the largest rate at which a motion damps a disturbance of states, shape (n, size); 0
-    where its derivatives are not finite.
+    """Return the largest rate at which a motion damps a disturbance of states, shape (n, size):
+    negative where every one grows, and 0 where its derivatives are not finite.
     """
     slopes = RightHandSide(motion, parameters).linearized(states)[1]
     finite = np.all(np.isfinite(slopes), axis=(1, 2))
