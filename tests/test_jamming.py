@@ -274,7 +274,7 @@ HARDLY_SLIPPING = (
         ),
     ).replace({"rolling_resistance": 0.00018500667863262965}),
 )
-"""Launches whose slip is less than 1e-8 m/s where it jams. Of those a few units in the last place
+"""Launches whose slip is less than 1e-8 m/s where it jams. Of launches a few units in the last place
 beside the first, rounding lets some strike and others not.
 """
 
