@@ -274,14 +274,14 @@ HARDLY_SLIPPING = (
         ),
     ).replace({"rolling_resistance": 0.00018500667863262965}),
 )
-"""Launches whose slip is less than 1e-8 m/s where it jams. Of launches a few units in the last place
-beside the first, rounding lets some strike and others not.
+"""Launches whose slip is less than 1e-8 m/s where it jams, and where rounding then lets nothing
+strike: of launches a few units in the last place beside them, some strike.
 """
 
 
 @pytest.mark.parametrize("problem", HARDLY_SLIPPING)
 def test_slip_that_has_all_but_ended_where_it_jams_sticks(problem: tt.Problem) -> None:
-    """By rounding nothing may strike then, and slip that goes on would jam again, and again."""
+    """By rounding nothing strikes then, and slip that goes on would jam again, and again."""
     kinds = []
     for units in range(-3, 4):
         tilt = problem.launch.tilt * (1.0 + units * np.finfo(float).eps)
@@ -290,7 +290,8 @@ def test_slip_that_has_all_but_ended_where_it_jams_sticks(problem: tt.Problem) -
         kinds.append(run["event_kind"].values.tolist())
         assert float(run["energy_error"]) < 1e-13
         assert float(np.hypot(run["slip_x"], run["slip_y"])[-1]) < 1e-14
-    assert ["stick"] in kinds or problem is not HARDLY_SLIPPING[0]
+    # Rounding decides of which of them something strikes.
+    assert ["stick"] in kinds
     assert all(each in (["stick"], ["impact", "stick"]) for each in kinds)
 
 
