@@ -12,7 +12,6 @@ import xarray as xr
 
 import tippetop as tt
 from campaigns import seeds
-from tippetop.integrators.taylor import STEPS_PER_ARC
 
 G = 9.81
 LAWS = ("viscous", "regularized", "coulomb", "hertz", "ellipsoidal")
@@ -164,20 +163,6 @@ def test_a_coin_that_rocks_within_rounding_of_flat_comes_to_its_end() -> None:
     assert run["outcome"].item() == "at_rest"
     assert run["event_kind"].values.tolist()[-2:] == ["lies down", "rests"]
     assert float(run["end_time"]) < 1e-9
-
-
-@pytest.mark.slow
-def test_slip_on_a_small_patch_is_followed_to_its_end_once() -> None:
-    """Friction turns slip much faster than drilling ends: the explicit method takes an arc of
-    steps, and the implicit one the rest.
-    """
-    launch = tt.Launch(
-        tilt=0.02018, spin=0.1062, tilt_rate=-1.0908, precession=-310.72, slip=(1.436e-4, -7.1e-7)
-    )
-    run = tt.simulate(problem_of(24).replace({"launch": launch}), 0.0047, samples=2)
-    assert run.attrs["status"] == "completed"
-    assert int(run["steps"]) < 1.25 * STEPS_PER_ARC
-    assert float(run["energy_error"]) < 1e-13
 
 
 @pytest.mark.campaign

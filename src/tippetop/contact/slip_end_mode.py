@@ -54,12 +54,9 @@ with that guard takes over sooner.
 SETTLED = 1e-14
 """Error of the instant at which slip ends, in natural units, that counts as none."""
 
-LAST_STEPS = (3e-9, 1e-16)
+LAST_STEPS = (3e-8, 1e-16)
 """How long before its end the rest of a velocity may be taken in one step, in natural units of
-time: if its direction has come to rest by then, and in any case. The error of that step falls as
-the square of the time: ten times earlier the direction of slip on a patch of a fiftieth of a body's
-radius is not at rest, and to follow it to the second takes thousands of steps; ten times later
-every end of slip takes some steps more.
+time: if its direction has come to rest by then, and in any case.
 """
 
 SHARE = 0.01
