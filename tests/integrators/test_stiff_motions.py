@@ -9,7 +9,7 @@ from exact_motions import whole
 
 import tippetop as tt
 from tippetop.integrators import Motion, make_integrator
-from tippetop.integrators.base import NO_STEP, Guard
+from tippetop.integrators.base import Guard
 from tippetop.integrators.collocation import STAGES, Collocation, Step, solved
 from tippetop.integrators.rates import RightHandSide
 from tippetop.integrators.relief import STEPS_PER_ARC, Relieved, is_stiff
@@ -152,37 +152,6 @@ def test_the_implicit_method_relieves_what_is_stiff_and_not_the_rest():
     assert found.steps < 10 * STEPS_PER_ARC
     alone = whole(Collocation(1e-12).integrate(motion, (1e5,), start, 2.0))
     assert found.end_state == pytest.approx(alone.end_state, abs=1e-8)
-
-
-def test_the_implicit_method_relieves_steps_shorter_than_rounding_of_the_time():
-    """A point on a circle drives slip that is damped at once; from the time 1 on, where explicit
-    steps would be 1e-17.
-    """
-
-    def driven(y, n):
-        return (-n[0] * y[0] + y[1], -y[2], y[1])
-
-    start = 1.0, np.array([0.0, 1.0, 0.0])
-    explicit = Recorded()
-    arc = whole(Relieved(explicit).integrate(Motion(driven, 3, 1), (1e18,), start, 21.0))
-    times = np.linspace(0.0, 20.0, 1001)
-    assert arc.failure is None
-    assert explicit.asked == [1.0]
-    found = arc.solution(1.0 + times)
-    assert np.abs(found[:, 1:] - exact(times)[:, 1:]).max() < 1e-12
-    assert found[1:, 0] * 1e18 == pytest.approx(np.cos(times[1:]), abs=1e-9)
-
-
-def test_what_turns_faster_than_rounding_of_the_time_is_given_up():
-    """A number that follows it is damped as fast, but no implicit step is long enough either."""
-
-    def turning(y, n):
-        return (-n[0] * (y[0] - y[1]), -n[0] * y[2], n[0] * y[1])
-
-    start = 1.0, np.array([1.0, 1.0, 0.0])
-    arcs = list(Relieved(Recorded()).integrate(Motion(turning, 3, 1), (1e17,), start, 2.0))
-    assert [arc.failure for arc in arcs] == [None, NO_STEP]
-    assert arcs[-1].solution.end == pytest.approx(1.0, abs=1e-12)
 
 
 @pytest.mark.filterwarnings("ignore:Conversion of an array:DeprecationWarning")  # NumPy before 2.4

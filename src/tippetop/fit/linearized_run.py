@@ -87,7 +87,7 @@ TRIES, SHORTER = 3, 0.1
 beside it go through the same events.
 """
 
-FIRM = 1e-2
+FIRM = 1e-6
 """Rate of a guard over the product of the sizes of its gradient and of the rates of the motion,
 above which the run beside passes the guard's fall at a usual angle."""
 

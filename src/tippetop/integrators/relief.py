@@ -4,8 +4,7 @@ Where friction damps slip much faster than the top moves, slip follows the motio
 method still takes steps as short as the damping: 7,500,000 of them for 2 s with mu = 1e6 s/m, where
 an implicit method needs two hundred. So after as many steps as there are in a full arc of Taylor's
 method it is looked whether they are long beside the fastest damping; if so, the implicit method
-goes on while its steps are much longer. Explicit steps shorter than rounding of the time lead
-nowhere, and count as long as that rounding.
+goes on while its steps are much longer.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tippetop.integrators.base import NO_STEP, TOLERANCES, Arc, Array, Integrator, Motion
+from tippetop.integrators.base import TOLERANCES, Arc, Array, Integrator, Motion
 from tippetop.integrators.rates import RightHandSide
 from tippetop.integrators.taylor import STEPS_PER_ARC
 from tippetop.mechanics.vectors import Scalar
@@ -63,29 +62,26 @@ class Relieved:
         self, motion: Motion, parameters: Sequence[float], start: tuple[float, Array], end: float
     ) -> Iterator[Arc]:
         """Follow the motion; see `tippetop.integrators.base.Integrator`."""
+        step = 0.0
         while start[0] < end:
-            checked, steps, step, stuck = start[0], 0, 0.0, False
+            checked, steps = start[0], 0
             for arc in self.explicit.integrate(motion, parameters, start, end):
-                start, steps = (arc.solution.end, arc.end_state), steps + arc.steps
-                stuck = arc.failure == NO_STEP
-                goes_on = arc.guard is None and (arc.failure is None or stuck) and start[0] < end
-                if goes_on and steps >= STEPS_PER_ARC:
-                    mean = max((start[0] - checked) / steps, float(np.spacing(start[0])))
-                    checked, steps = start[0], 0
-                    if is_stiff(motion, parameters, start[1][None], np.array([mean]))[0]:
-                        step = mean
-                        yield replace(arc, failure=None)
-                        break
                 yield arc
-            if not step:
+                start, steps = (arc.solution.end, arc.end_state), steps + arc.steps
+                if arc.guard is not None or arc.failure is not None or start[0] >= end:
+                    return
+                if steps >= STEPS_PER_ARC:
+                    step, checked, steps = (start[0] - checked) / steps, start[0], 0
+                    if is_stiff(motion, parameters, start[1][None], np.array([step]))[0]:
+                        break
+            else:
                 return
             implicit = self._implicit(LONGER * step)
             for arc in implicit.integrate(motion, parameters, start, end):
-                stuck = stuck and arc.solution.end == start[0]
                 start = arc.solution.end, arc.end_state
-                if arc.steps or stuck:
-                    yield replace(arc, failure=NO_STEP if stuck else None, method=implicit)
-                if arc.guard is not None or stuck:
+                if arc.steps:
+                    yield replace(arc, failure=None, method=implicit)
+                if arc.guard is not None:
                     return
 
 
