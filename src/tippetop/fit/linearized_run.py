@@ -87,10 +87,6 @@ TRIES, SHORTER = 3, 0.1
 beside it go through the same events.
 """
 
-FIRM = 1e-6
-"""Rate of a guard over the product of the sizes of its gradient and of the rates of the motion,
-above which the run beside passes the guard's fall at a usual angle."""
-
 GRAZING = 1e-8
 """Rate of a guard where it falls, over the sum of the sizes of its parts, one of each number of the
 motion, below which its time has no derivative: the parts cancel, and rounding leaves few digits of
@@ -587,11 +583,11 @@ class LinearizedRun:
         guard = guard_of(mode.motion.guards, visit.end)
         if visit.goes_on and not (visit.end and visit.end.cause in OTHER_FORMULA):
             # Any time would do. That of the guard keeps what comes soon as near to it beside; where
-            # the guard hardly falls, it is the one at which the run beside is nearest to the end.
+            # the guard grazes, it is the one at which the run beside is nearest to the end.
             if guard is not None:
                 changes, gradient = guard_slopes(guard, (last, tangents), carried)
                 slope = float(gradient @ slopes)
-                if abs(slope) > FIRM * float(np.linalg.norm(gradient) * np.linalg.norm(slopes)):
+                if abs(slope) > GRAZING * float(np.abs(gradient) @ np.abs(slopes)):
                     return None, -changes / slope
             return None, -(tangents @ slopes) / (1.0 + slopes @ slopes)
         if guard is None:
