@@ -239,22 +239,6 @@ FIT_OPTIONS = [
 """The same of the options of a fit to a file."""
 
 
-@pytest.mark.parametrize(("options", "begin"), FIT_OPTIONS)
-def test_a_mistake_in_an_option_of_a_fit(
-    options: str,
-    begin: str,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    tmp_path: Any,
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "film.csv").write_text("time (s),tilt (rad)\n0,0.1\n0.1,0.12\n0.2,0.14\n")
-    command = ["fit", "film.csv", "--vary", "friction.mu", *options.split()]
-    said = at_the_command_line(monkeypatch, capsys, *command)
-    assert said.startswith(begin)
-    assert "None" not in said
-
-
 FILM_OPTIONS = [
     ("--scale 0.1mm", "--scale: 0.1mm is the size of a pixel, and column x is in mm (leave it"),
     ("--point nose", "--point: 'nose' is not 'tip', 'center'"),
@@ -262,8 +246,19 @@ FILM_OPTIONS = [
 """The same of a film whose columns have units."""
 
 
-@pytest.mark.parametrize(("options", "begin"), FILM_OPTIONS)
-def test_a_mistake_in_an_option_of_a_film(
+TILTS = "time (s),tilt (rad)\n0,0.1\n0.1,0.12\n0.2,0.14\n"
+POINTS = "t,x (mm),y (mm)\n0,1,1\n0.1,2,1\n0.2,3,1\n"
+
+
+@pytest.mark.parametrize(
+    ("table", "options", "begin"),
+    [
+        *((TILTS, options, begin) for options, begin in FIT_OPTIONS),
+        *((POINTS, f"--view above {options}", begin) for options, begin in FILM_OPTIONS),
+    ],
+)
+def test_a_mistake_in_an_option_of_a_fit(
+    table: str,
     options: str,
     begin: str,
     monkeypatch: pytest.MonkeyPatch,
@@ -271,9 +266,11 @@ def test_a_mistake_in_an_option_of_a_film(
     tmp_path: Any,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "film.csv").write_text("t,x (mm),y (mm)\n0,1,1\n0.1,2,1\n0.2,3,1\n")
-    command = ["fit", "film.csv", "--vary", "friction.mu", "--view", "above", *options.split()]
-    assert at_the_command_line(monkeypatch, capsys, *command).startswith(begin)
+    (tmp_path / "film.csv").write_text(table)
+    command = ["fit", "film.csv", "--vary", "friction.mu", *options.split()]
+    said = at_the_command_line(monkeypatch, capsys, *command)
+    assert said.startswith(begin)
+    assert "None" not in said
 
 
 def test_a_column_without_numbers_is_refused_without_warnings(

@@ -60,9 +60,8 @@ def fit(
     vary
         Fields of numbers that are fitted, such as ``["friction.mu", "launch.spin"]``; or a mapping
         of fields to ranges ``(low, high)`` that they stay in, whose ends may have units as in
-        "150 rpm", or None for none. Missing initial
-        conditions are fitted like anything else: "launch.tilt_rate", "launch.precession". None for
-        those that are shared.
+        "150 rpm", or None for none. Missing initial conditions are fitted like anything else:
+        "launch.tilt_rate", "launch.precession". None for those that are shared.
     shared
         Fields among them that are the same in all of several launches; None for all. The others are
         fitted for each launch, and named by its number: "2.launch.spin".
